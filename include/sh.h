@@ -1,0 +1,1441 @@
+/* sh.h - spherical harmonics for lighting, bands L0, L1 and L2, in one header. C99 and C++11. MIT licence, see the end.
+ *
+ *     #include "sh.h"
+ *
+ *     sh_image sky = { pixels, 1024, 512, 0, 3, SH_F32 };            // an equirectangular panorama, RGB floats
+ *     float c[3 * SH_COUNT(SH_L2)];                                  // 9 coefficients a channel, planar
+ *     if (sh_project_equirect(SH_L2, &sky, 0, c, NULL) == SH_OK) {
+ *         float up[3] = { 0, 0, 1 };
+ *         float red = sh_irradiance(SH_L2, c, up);                   // what a white surface facing up reflects; green: c + 9
+ *     }
+ *
+ * CONVENTIONS
+ *   basis       1/4pi-normalised: coefficients are the moments of the light over the sphere, <f> = 1/(4 pi) integral f dOmega:
+ *               R0 = <f>,  R1 = <w f>,  R2 = <(w w' - I/3) f>.  Radiance 1 everywhere is R0 = 1, all else 0. No Condon-Shortley phase.
+ *   storage     float c[SH_COUNT(order)]: R0, x, y, z, xx, xy, xz, yy, yz; zz = -(xx + yy) is not stored.
+ *               An order is a prefix: the first 4 of an L2 set are its L1 set. Channel k starts at c + k * SH_COUNT(order).
+ *   order       the highest band, SH_L0, SH_L1 or SH_L2. Pass a literal: the bands above it are then not compiled.
+ *   directions  float[3], unit length (never normalised for you), pointing to where the light comes from. Right-handed; panoramas
+ *               have z up.
+ *   irradiance  is E/pi: a white Lambertian surface under a sky of radiance 1 reads 1. Multiply by albedo for outgoing radiance,
+ *               by pi for E in W/m^2.
+ *   aliasing    an output may be exactly the same array as an input; partial overlap is undefined.
+ *   errors      functions that can be handed bad input return SH_OK or a negative SH_ERROR_..., and write nothing on error.
+ *               Arithmetic on coefficients does not look for NaN: NaN in, NaN out. Finite input up to 1e18 never gives NaN.
+ *   state       none. No allocation, no globals, no dependency but the C library; everything is static inline.
+ *
+ * OPTIONS, each a macro to define before including
+ *   SH_NO_BATCH  leaves out batches and images, and the intrinsics' header with them, which costs more time to compile than all
+ *                the rest. For files that evaluate single directions. Default: everything.
+ *   SH_NO_SIMD   forces the portable scalar kernels. Default: the best of what the compiler's target flags allow.
+ *   SH_SIMD      one of the SH_SIMD_... numbers below, to force a backend; it is an error if the target lacks it.
+ *
+ * DOES NOT  go above L2; read or write image files; pick a tone map; know your engine's axes; allocate; start threads (the ..._rows
+ *           forms and sh_accum let you).
+ *
+ * TAGS  spherical harmonics, SH, light probe, irradiance, radiance, ambient, image based lighting, IBL, environment map, global
+ *       illumination, spherical Gaussian, zonal harmonics, ambient occlusion, equirectangular, panorama
+ */
+#ifndef SH_H
+#define SH_H
+
+#include <math.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+/* ---- Configuration ------------------------------------------------------------------------------------------------------------ */
+
+#define SH_SIMD_SCALAR 0
+#define SH_SIMD_SSE2 1
+#define SH_SIMD_AVX2 2 /* with FMA */
+#define SH_SIMD_AVX512 3 /* F */
+#define SH_SIMD_NEON 4
+#define SH_SIMD_WASM 5
+
+/* Small functions are always inlined, so that a literal order removes what it does not need at every level of optimisation that
+ * removes anything. The large ones are left to the compiler. */
+#if defined(__GNUC__) || defined(__clang__)
+#define SHI_INLINE static inline __attribute__((always_inline))
+#elif defined(_MSC_VER)
+#define SHI_INLINE static __forceinline
+#else
+#define SHI_INLINE static inline
+#endif
+#define SHI_FUNCTION static inline
+
+/* ---- Types and constants ------------------------------------------------------------------------------------------------------ */
+
+enum { SH_L0, SH_L1, SH_L2 };                                        /* order: the highest band */
+#define SH_COUNT(order) (((order) + 1) * ((order) + 1))              /* 1, 4, 9 coefficients */
+enum { SH_R0, SH_X, SH_Y, SH_Z, SH_XX, SH_XY, SH_XZ, SH_YY, SH_YZ }; /* index of a coefficient */
+enum { SH_MAX_CHANNELS = 16 };                                       /* of sh_project_function; batches and samples take any number */
+
+enum {
+    SH_OK = 0,
+    SH_ERROR_ARGUMENT = -1, /* null pointer, order outside 0..2, channels < 1, unknown flag, function degree out of range */
+    SH_ERROR_SIZE = -2,     /* width, height or stride zero, negative, too small for a row, or overflowing size_t; row range outside */
+    SH_ERROR_FORMAT = -3    /* unknown format, or a number of channels that it cannot have */
+};
+
+/* Sums of weighted samples of one channel, in double; all zero at the start. Plain numbers: the sum over threads, frames or machines
+ * is the sum of the members. An RGB accumulator is an array of three. */
+typedef struct sh_accum {
+    double sum[9];
+    double weight;
+} sh_accum;
+
+/* Calls back for the radiance arriving from `dir`; writes one value a channel. */
+typedef void (*sh_function)(const float dir[3], float *value, void *user);
+
+/* ---- Coefficients: all take one channel of SH_COUNT(order) floats -------------------------------------------------------------- */
+
+/* The basis at unit direction dir: 1, x, y, z, xx - 1/3, xy, xz, yy - 1/3, yz. Each within 2 ulp of 1. */
+SHI_INLINE void sh_basis(int order, const float dir[3], float *basis);
+
+/* c += value * basis(dir): adds light of mean radiance `value` that arrives from the single direction dir. */
+SHI_INLINE void sh_add_sample(int order, const float dir[3], float value, float *c);
+
+SHI_INLINE void sh_scale(int order, const float *c, float scale, float *out);                   /* out = scale c */
+SHI_INLINE void sh_madd(int order, const float *a, float scale, float *c);                      /* c += scale a */
+SHI_INLINE void sh_lerp(int order, const float *a, const float *b, float t, float *out);        /* out = a + t (b - a); exact at 0 and 1 */
+
+/* Mean over the sphere of the product of the two radiance reconstructions: a0 b0 + 3 a1.b1 + 15/2 A:B. */
+SHI_INLINE float sh_dot(int order, const float *a, const float *b);
+
+/* The first SH_COUNT(order_out) coefficients of each of `channels` planar sets; order_out <= order. out may be c. */
+SHI_FUNCTION void sh_truncate(int order, int channels, const float *c, int order_out, float *out);
+
+/* ---- Reconstruction: one channel, one unit direction ---------------------------------------------------------------------------- */
+
+/* Radiance from dir: R0 + 3 R1.w + 15/2 w'R2 w. Exact for light without bands above `order`; rings, and may be negative, for others.
+ * Rounding error <= 4 ulp of the sum of absolute terms. Hazel, "Alternative definition of Spherical Harmonics for Lighting". */
+SHI_INLINE float sh_radiance(int order, const float *c, const float dir[3]);
+
+/* Irradiance / pi at unit normal n, from radiance coefficients c: R0 + 2 R1.n + 15/8 n'R2 n.
+ * Exact for light without bands above `order`; may be negative. For any other light, L2 leaves out the even bands from 4 on, each
+ * at most 1/24 of its radiance. Rounding error <= 4 ulp of the sum of absolute terms. Hazel, "Converting SH Radiance to Irradiance". */
+SHI_INLINE float sh_irradiance(int order, const float *c, const float n[3]);
+
+/* Irradiance / pi at -n, given the irradiance / pi at n by any model or measurement: irradiance - 4 n.R1.
+ * Not an approximation: it holds for the true irradiance of every light. Order 0 knows no R1 and returns its argument. */
+SHI_INLINE float sh_irradiance_opposite(int order, const float *c, const float n[3], float irradiance);
+
+/* Irradiance / pi at unit normal n from the directions within a cone about n only, n.w > cos_angle: ambient occlusion by an aperture.
+ * cos_angle is clamped to [0, 1]; 0 is sh_irradiance, 1 is 0. */
+SHI_INLINE float sh_irradiance_ao(int order, const float *c, const float n[3], float cos_angle);
+
+/* ---- Zonal kernels: z[l] is the factor of band l under convolution, and the coefficient of band l of the lobe itself ------------- */
+
+SHI_FUNCTION void sh_zonal_lambert(float zonal[3]);                      /* 4 max(0, t): irradiance / pi. 1, 2/3, 1/4 */
+SHI_FUNCTION void sh_zonal_ao(float cos_angle, float zonal[3]);          /* 4 t where t > cos_angle, in [0, 1] */
+SHI_FUNCTION void sh_zonal_half_lambert(float zonal[3]);                 /* 1 + t. 1, 1/3, 0 */
+SHI_FUNCTION void sh_zonal_cap(float cos_angle, float zonal[3]);         /* radiance 1 where t > cos_angle, in [-1, 1] */
+SHI_FUNCTION void sh_zonal_vmf(float sharpness, float zonal[3]);         /* von Mises-Fisher lobe of mean 1, exp(K t), K >= 0 */
+SHI_FUNCTION void sh_zonal_hann(float width, float zonal[3]);            /* window (1 + cos(pi l / width)) / 2, 0 from l = width on */
+SHI_FUNCTION void sh_zonal_lanczos(float width, float zonal[3]);         /* window sinc(pi l / width), 0 from l = width on */
+SHI_FUNCTION void sh_zonal_laplacian(float lambda, float zonal[3]);      /* window 1 / (1 + lambda l^2 (l + 1)^2), lambda >= 0 */
+
+/* Convolution with a zonal kernel: band l times zonal[l]. */
+SHI_INLINE void sh_convolve(int order, const float *c, const float zonal[3], float *out);
+
+/* c += value * the zonal lobe about unit direction dir. zonal = { 1, 1, 1 } is sh_add_sample. */
+SHI_INLINE void sh_zonal_add(int order, const float zonal[3], const float dir[3], float value, float *c);
+
+/* ---- Analysis ------------------------------------------------------------------------------------------------------------------- */
+
+/* |R1| / R0 of one channel of L1 or higher, in [0, 1]: 0 for light that is the same from opposite sides, 1 for a single direction.
+ * Black, or R0 <= 0: 0. More than non-negative light can have: 1. Any magnitude, subnormal to 1e38. */
+SHI_FUNCTION float sh_directionality(const float *c);
+
+/* The mean direction of the light, unit length, from one channel of L1 or higher; returns |R1|. If R1 = 0: 0, and dir is +z. */
+SHI_FUNCTION float sh_average_direction(const float *c, float dir[3]);
+
+/* The directional light and the ambient rest that have the same R0 and, for one channel, the same R1. dir is shared by the channels:
+ * that of the sum of their R1 (+z if it is 0). intensity[k] is irradiance / pi at normal incidence, 4 max(0, R1.dir); ambient[k] is
+ * radiance, R0 - intensity / 4, not negative for a real light. c has `channels` sets of order >= 1. */
+SHI_FUNCTION void sh_dominant_light(int order, int channels, const float *c, float dir[3], float *intensity, float *ambient);
+
+/* ---- Projection from samples and functions -------------------------------------------------------------------------------------- */
+
+SHI_FUNCTION void sh_accum_clear(int channels, sh_accum *accum);
+
+/* Adds one sample of one channel. Uniformly distributed samples have equal weights (importance sampling: weight 1, and value divided
+ * by 4 pi pdf); quadrature nodes have their solid angle, in any unit. */
+SHI_INLINE void sh_accum_sample(int order, const float dir[3], float value, float weight, sh_accum *accum);
+
+SHI_FUNCTION void sh_accum_merge(int channels, const sh_accum *from, sh_accum *into);           /* into += from */
+
+/* Coefficients as the weighted mean of what was added; 0 where nothing was. accum has `channels` elements. */
+SHI_FUNCTION void sh_accum_finish(int order, int channels, const sh_accum *accum, float *c);
+
+/* Coefficients as the sum itself: what was not added is black. For image rows, whose weights are fractions of the sphere. */
+SHI_FUNCTION void sh_accum_total(int order, int channels, const sh_accum *accum, float *c);
+
+/* c = weighted mean of value * basis over `count` directions x[i], y[i], z[i]. value is planar: channel k is value[k * count + i].
+ * weight NULL: all equal. The sums are in double: no stagnation, relative error 1e-7. */
+SHI_FUNCTION int sh_project_samples(int order, int channels, const float *x, const float *y, const float *z, const float *value,
+                                    const float *weight, size_t count, float *c);
+
+/* The same sums added to accum[channels], to go on with later or elsewhere. */
+SHI_FUNCTION int sh_accum_samples(int order, int channels, const float *x, const float *y, const float *z, const float *value,
+                                  const float *weight, size_t count, sh_accum *accum);
+
+/* Projects a function by Gauss-Legendre x uniform quadrature: exact, to rounding, if f is a polynomial of at most `degree` in
+ * (x, y, z), 0 <= degree <= 1000. Calls f about (degree + order)^2 / 2 times. channels <= SH_MAX_CHANNELS. */
+SHI_FUNCTION int sh_project_function(int order, int channels, sh_function f, void *user, int degree, float *c);
+
+/* Direction i of a columns x rows stratification of the sphere into equal areas, jittered by `seed`: i in [0, columns * rows),
+ * row by row from +z; larger i wrap round with a new jitter. Reproducible: equal arguments, equal directions. */
+SHI_FUNCTION void sh_direction_stratified(uint32_t i, uint32_t columns, uint32_t rows, uint32_t seed, float dir[3]);
+
+/* Direction i of an endless low-discrepancy sequence, uniform on the sphere; `seed` shifts it. Any prefix is well distributed.
+ * Roberts, "The Unreasonable Effectiveness of Quasirandom Sequences" (R2). */
+SHI_FUNCTION void sh_direction_sequence(uint32_t i, uint32_t seed, float dir[3]);
+
+/* Direction i of `count` on the Fibonacci spiral, from +z to -z: the best of the three where count is known. */
+SHI_FUNCTION void sh_direction_fibonacci(uint32_t i, uint32_t count, float dir[3]);
+
+#ifndef SH_NO_BATCH
+/* ---- Images --------------------------------------------------------------------------------------------------------------------- */
+
+typedef enum sh_format {
+    SH_F32,    /* float */
+    SH_F16,    /* IEEE half */
+    SH_RGBE8,  /* Radiance: bytes r, g, b, e; radiance = m 2^(e - 136); exponents below 10 (< 2e-36) read as black. 3 channels in 4 bytes */
+    SH_RGB9E5, /* shared exponent in a native 32-bit word, red in the low 9 bits; radiance = m 2^(e - 24). 3 channels in 4 bytes */
+    SH_SRGB8   /* bytes with the sRGB transfer curve; 255 is radiance 1 */
+} sh_format;
+
+/* Pixels in memory, never written. Any alignment. channels: 1, 3 or 4; the 4th is padding or alpha and is ignored. RGBE8 and RGB9E5
+ * have 3 (4 is taken to mean the same). row_stride: bytes from a row to the next; 0: rows are tight. */
+typedef struct sh_image {
+    const void *pixels;
+    int width, height;
+    size_t row_stride;
+    int channels;
+    sh_format format;
+} sh_image;
+
+/* What a projection found. A texel is non-finite if any of its colour channels is NaN or infinite: it is left out whole, as if
+ * black. It is negative if any is below zero. */
+typedef struct sh_report {
+    uint64_t texels, nonfinite, negative;
+} sh_report;
+
+enum {
+    SH_CLAMP_NEGATIVE = 1, /* negative values count as 0; they are kept otherwise */
+    SH_POINT_TEXELS = 2,   /* a texel is a sample at its centre, not an average over its area */
+    SH_CLOCKWISE = 4       /* equirectangular: columns run from +x to -y */
+};
+
+/* Colour channels of an image, and of the coefficients projected from it: 1 or 3. */
+SHI_FUNCTION int sh_image_channels(const sh_image *image);
+
+/* Projects an equirectangular panorama to sh_image_channels(image) planar sets.
+ * Row 0 is at +z; column x is at azimuth 2 pi (x + 1/2) / width, from +x to +y: on the inside of the sphere, columns run to the left.
+ * For a panorama as a camera sees it, columns to the right, pass SH_CLOCKWISE.
+ * Texels are area averages: the basis is integrated over each exactly. With SH_POINT_TEXELS they are point samples: exact for
+ * images of bands up to degree min(width, height) - 3. Error <= 1e-7 of the mean of |radiance|. report may be NULL. */
+SHI_INLINE int sh_project_equirect(int order, const sh_image *image, unsigned flags, float *c, sh_report *report);
+
+/* Adds rows [first_row, first_row + row_count) to accum[sh_image_channels(image)], and to report: time slices, dirty tiles, half
+ * skies, threads. The weights are fractions of the sphere: sh_accum_total when all rows are in, or to read the others as black. */
+SHI_INLINE int sh_project_equirect_rows(int order, const sh_image *image, unsigned flags, int first_row, int row_count,
+                                          sh_accum *accum, sh_report *report);
+#endif /* SH_NO_BATCH */
+
+/* ---- Coefficients --------------------------------------------------------------------------------------------------------------- */
+
+SHI_INLINE void sh_basis(int order, const float dir[3], float *basis) {
+    const float x = dir[0], y = dir[1], z = dir[2], third = 1.0f / 3.0f;
+    basis[SH_R0] = 1.0f;
+    if (order < SH_L1)
+        return;
+    basis[SH_X] = x;
+    basis[SH_Y] = y;
+    basis[SH_Z] = z;
+    if (order < SH_L2)
+        return;
+    basis[SH_XX] = x * x - third;
+    basis[SH_XY] = x * y;
+    basis[SH_XZ] = x * z;
+    basis[SH_YY] = y * y - third;
+    basis[SH_YZ] = y * z;
+}
+
+SHI_INLINE void sh_scale(int order, const float *c, float scale, float *out) {
+    for (int i = 0; i < SH_COUNT(order); i++)
+        out[i] = scale * c[i];
+}
+
+SHI_INLINE void sh_madd(int order, const float *a, float scale, float *c) {
+    for (int i = 0; i < SH_COUNT(order); i++)
+        c[i] += scale * a[i];
+}
+
+SHI_INLINE void sh_lerp(int order, const float *a, const float *b, float t, float *out) {
+    for (int i = 0; i < SH_COUNT(order); i++)
+        out[i] = (1.0f - t) * a[i] + t * b[i];
+}
+
+SHI_INLINE void sh_add_sample(int order, const float dir[3], float value, float *c) {
+    float basis[SH_COUNT(SH_L2)];
+    sh_basis(order, dir, basis);
+    sh_madd(order, basis, value, c);
+}
+
+SHI_INLINE float shi_dot3(const float a[3], const float b[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+SHI_INLINE float sh_dot(int order, const float *a, const float *b) {
+    float sum = a[SH_R0] * b[SH_R0];
+    if (order >= SH_L1)
+        sum += 3.0f * shi_dot3(a + SH_X, b + SH_X);
+    if (order >= SH_L2) {
+        const float diagonal = a[SH_XX] * b[SH_XX] + a[SH_YY] * b[SH_YY] + (a[SH_XX] + a[SH_YY]) * (b[SH_XX] + b[SH_YY]);
+        const float rest = a[SH_XY] * b[SH_XY] + a[SH_XZ] * b[SH_XZ] + a[SH_YZ] * b[SH_YZ];
+        sum += 7.5f * (diagonal + 2.0f * rest);
+    }
+    return sum;
+}
+
+SHI_FUNCTION void sh_truncate(int order, int channels, const float *c, int order_out, float *out) {
+    for (int k = 0; k < channels; k++)
+        for (int i = 0; i < SH_COUNT(order_out); i++)
+            out[k * SH_COUNT(order_out) + i] = c[k * SH_COUNT(order) + i];
+}
+
+/* ---- Reconstruction ------------------------------------------------------------------------------------------------------------- */
+
+/* w'R2 w, with zz = -(xx + yy). */
+SHI_INLINE float shi_quadratic(const float *c, const float w[3]) {
+    const float x = w[0], y = w[1], z = w[2];
+    const float diagonal = c[SH_XX] * (x * x - z * z) + c[SH_YY] * (y * y - z * z);
+    return diagonal + 2.0f * (c[SH_XY] * (x * y) + c[SH_XZ] * (x * z) + c[SH_YZ] * (y * z));
+}
+
+/* The reconstruction whose bands are weighted w0, w1, w2: the sum of w_l (2l + 1) times the band's part of the light. */
+SHI_INLINE float shi_reconstruct(int order, const float *c, const float w[3], float w0, float w1, float w2) {
+    float sum = w0 * c[SH_R0];
+    if (order >= SH_L1)
+        sum += w1 * shi_dot3(c + SH_X, w);
+    if (order >= SH_L2)
+        sum += w2 * shi_quadratic(c, w);
+    return sum;
+}
+
+SHI_INLINE float sh_radiance(int order, const float *c, const float dir[3]) {
+    return shi_reconstruct(order, c, dir, 1.0f, 3.0f, 7.5f);
+}
+
+SHI_INLINE float sh_irradiance(int order, const float *c, const float n[3]) {
+    return shi_reconstruct(order, c, n, 1.0f, 2.0f, 1.875f);
+}
+
+SHI_INLINE float sh_irradiance_opposite(int order, const float *c, const float n[3], float irradiance) {
+    return order >= SH_L1 ? irradiance - 4.0f * shi_dot3(c + SH_X, n) : irradiance;
+}
+
+SHI_INLINE float shi_clamp(float x, float lo, float hi) {
+    return x < lo ? lo : x > hi ? hi : x;
+}
+
+SHI_INLINE float sh_irradiance_ao(int order, const float *c, const float n[3], float cos_angle) {
+    float zonal[3];
+    sh_zonal_ao(cos_angle, zonal);
+    return shi_reconstruct(order, c, n, zonal[0], 3.0f * zonal[1], 7.5f * zonal[2]);
+}
+
+/* ---- Zonal kernels -------------------------------------------------------------------------------------------------------------- */
+
+SHI_INLINE void shi_set3(float a, float b, float c, float out[3]) {
+    out[0] = a;
+    out[1] = b;
+    out[2] = c;
+}
+
+SHI_FUNCTION void sh_zonal_lambert(float zonal[3]) {
+    shi_set3(1.0f, 2.0f / 3.0f, 0.25f, zonal);
+}
+
+SHI_FUNCTION void sh_zonal_half_lambert(float zonal[3]) {
+    shi_set3(1.0f, 1.0f / 3.0f, 0.0f, zonal);
+}
+
+/* Both polynomials have the factor 1 - c, taken out so that narrow cones keep their relative accuracy. */
+SHI_FUNCTION void sh_zonal_ao(float cos_angle, float zonal[3]) {
+    const float c = shi_clamp(cos_angle, 0.0f, 1.0f), cc = c * c, k0 = (1.0f - c) * (1.0f + c);
+    shi_set3(k0, 2.0f / 3.0f * (1.0f - c) * (1.0f + c + cc), 0.25f * k0 * (1.0f + 3.0f * cc), zonal);
+}
+
+SHI_FUNCTION void sh_zonal_cap(float cos_angle, float zonal[3]) {
+    const float c = shi_clamp(cos_angle, -1.0f, 1.0f), k1 = 0.25f * (1.0f - c) * (1.0f + c);
+    shi_set3(0.5f * (1.0f - c), k1, c * k1, zonal);
+}
+
+/* a1 = coth K - 1/K and a2 = 1 - 3 a1 / K cancel for small K: there, their Taylor series, off by < 1e-9 relative at K = 1/4. */
+SHI_FUNCTION void sh_zonal_vmf(float sharpness, float zonal[3]) {
+    const double k = (double)sharpness, kk = k * k;
+    double a1, a2;
+    if (k < 0.25) {
+        a1 = k * (1.0 / 3 - kk * (1.0 / 45 - kk * (2.0 / 945 - kk * (1.0 / 4725))));
+        a2 = kk * (1.0 / 15 - kk * (2.0 / 315 - kk * (1.0 / 1575 - kk * (2.0 / 31185))));
+    } else {
+        a1 = 1.0 / tanh(k) - 1.0 / k;
+        a2 = 1.0 - 3.0 * a1 / k;
+    }
+    shi_set3(1.0f, (float)a1, (float)a2, zonal);
+}
+
+#define SHI_PI 3.14159265358979323846 /* pi */
+
+SHI_FUNCTION void sh_zonal_hann(float width, float zonal[3]) {
+    for (int l = 0; l < 3; l++)
+        zonal[l] = l == 0 ? 1.0f : (float)l < width ? (float)(0.5 + 0.5 * cos(SHI_PI * l / (double)width)) : 0.0f;
+}
+
+SHI_FUNCTION void sh_zonal_lanczos(float width, float zonal[3]) {
+    for (int l = 0; l < 3; l++) {
+        const double t = l == 0 ? 0.0 : SHI_PI * l / (double)width;
+        zonal[l] = l == 0 ? 1.0f : (float)l < width ? (float)(t > 1e-8 ? sin(t) / t : 1.0) : 0.0f;
+    }
+}
+
+SHI_FUNCTION void sh_zonal_laplacian(float lambda, float zonal[3]) {
+    shi_set3(1.0f, 1.0f / (1.0f + 4.0f * lambda), 1.0f / (1.0f + 36.0f * lambda), zonal);
+}
+
+SHI_INLINE void sh_convolve(int order, const float *c, const float zonal[3], float *out) {
+    for (int i = 0; i < SH_COUNT(order); i++)
+        out[i] = zonal[i < 1 ? 0 : i < 4 ? 1 : 2] * c[i];
+}
+
+SHI_INLINE void sh_zonal_add(int order, const float zonal[3], const float dir[3], float value, float *c) {
+    float lobe[SH_COUNT(SH_L2)];
+    sh_basis(order, dir, lobe);
+    sh_convolve(order, lobe, zonal, lobe);
+    sh_madd(order, lobe, value, c);
+}
+
+/* ---- Analysis ------------------------------------------------------------------------------------------------------------------- */
+
+/* The length of v, and v / |v| (+z where v = 0). In double no square of a float overflows or underflows. */
+SHI_FUNCTION float shi_normalize(const float v[3], float unit[3]) {
+    const double x = (double)v[0], y = (double)v[1], z = (double)v[2], length = sqrt(x * x + y * y + z * z);
+    if (length > 0)
+        shi_set3((float)(x / length), (float)(y / length), (float)(z / length), unit);
+    else
+        shi_set3(0.0f, 0.0f, 1.0f, unit);
+    return (float)length;
+}
+
+SHI_FUNCTION float sh_average_direction(const float *c, float dir[3]) {
+    return shi_normalize(c + SH_X, dir);
+}
+
+SHI_FUNCTION float sh_directionality(const float *c) {
+    float dir[3];
+    const float length = sh_average_direction(c, dir);
+    return c[SH_R0] > 0.0f ? shi_clamp(length / c[SH_R0], 0.0f, 1.0f) : 0.0f;
+}
+
+SHI_FUNCTION void sh_dominant_light(int order, int channels, const float *c, float dir[3], float *intensity, float *ambient) {
+    float sum[3] = { 0, 0, 0 };
+    for (int k = 0; k < channels; k++)
+        for (int i = 0; i < 3; i++)
+            sum[i] += c[k * SH_COUNT(order) + SH_X + i];
+    shi_normalize(sum, dir);
+    for (int k = 0; k < channels; k++) {
+        const float *ck = c + k * SH_COUNT(order);
+        const float along = shi_dot3(ck + SH_X, dir), beam = along > 0.0f ? along : 0.0f;
+        intensity[k] = 4.0f * beam;
+        ambient[k] = ck[SH_R0] - beam;
+    }
+}
+
+/* ---- Projection from samples and functions -------------------------------------------------------------------------------------- */
+
+SHI_FUNCTION void sh_accum_clear(int channels, sh_accum *accum) {
+    for (int k = 0; k < channels; k++) {
+        for (int i = 0; i < SH_COUNT(SH_L2); i++)
+            accum[k].sum[i] = 0.0;
+        accum[k].weight = 0.0;
+    }
+}
+
+SHI_INLINE void sh_accum_sample(int order, const float dir[3], float value, float weight, sh_accum *accum) {
+    const double x = (double)dir[0], y = (double)dir[1], z = (double)dir[2], third = 1.0 / 3.0;
+    const double v = (double)weight * (double)value;
+    double *sum = accum->sum;
+    accum->weight += (double)weight;
+    sum[SH_R0] += v;
+    if (order >= SH_L1) {
+        sum[SH_X] += v * x;
+        sum[SH_Y] += v * y;
+        sum[SH_Z] += v * z;
+    }
+    if (order >= SH_L2) {
+        sum[SH_XX] += v * (x * x - third);
+        sum[SH_XY] += v * (x * y);
+        sum[SH_XZ] += v * (x * z);
+        sum[SH_YY] += v * (y * y - third);
+        sum[SH_YZ] += v * (y * z);
+    }
+}
+
+SHI_FUNCTION void sh_accum_merge(int channels, const sh_accum *from, sh_accum *into) {
+    for (int k = 0; k < channels; k++) {
+        for (int i = 0; i < SH_COUNT(SH_L2); i++)
+            into[k].sum[i] += from[k].sum[i];
+        into[k].weight += from[k].weight;
+    }
+}
+
+SHI_FUNCTION void sh_accum_finish(int order, int channels, const sh_accum *accum, float *c) {
+    for (int k = 0; k < channels; k++)
+        for (int i = 0; i < SH_COUNT(order); i++)
+            c[k * SH_COUNT(order) + i] = accum[k].weight != 0.0 ? (float)(accum[k].sum[i] / accum[k].weight) : 0.0f;
+}
+
+SHI_FUNCTION void sh_accum_total(int order, int channels, const sh_accum *accum, float *c) {
+    for (int k = 0; k < channels; k++)
+        for (int i = 0; i < SH_COUNT(order); i++)
+            c[k * SH_COUNT(order) + i] = (float)accum[k].sum[i];
+}
+
+SHI_INLINE int shi_order_ok(int order) {
+    return order >= SH_L0 && order <= SH_L2;
+}
+
+SHI_INLINE int shi_samples_ok(int order, int channels, const float *x, const float *y, const float *z, const float *value,
+                              size_t count) {
+    return shi_order_ok(order) && channels > 0 && (count == 0 || (x && y && z && value));
+}
+
+/* One channel's `count` samples added to an accumulator. */
+SHI_INLINE void shi_accum_channel(int order, const float *x, const float *y, const float *z, const float *value, const float *weight,
+                                  size_t count, sh_accum *accum) {
+    for (size_t i = 0; i < count; i++) {
+        const float dir[3] = { x[i], y[i], z[i] };
+        sh_accum_sample(order, dir, value[i], weight ? weight[i] : 1.0f, accum);
+    }
+}
+
+SHI_FUNCTION int sh_accum_samples(int order, int channels, const float *x, const float *y, const float *z, const float *value,
+                                  const float *weight, size_t count, sh_accum *accum) {
+    if (!shi_samples_ok(order, channels, x, y, z, value, count) || !accum)
+        return SH_ERROR_ARGUMENT;
+    for (int k = 0; k < channels; k++)
+        shi_accum_channel(order, x, y, z, value + (size_t)k * count, weight, count, accum + k);
+    return SH_OK;
+}
+
+SHI_FUNCTION int sh_project_samples(int order, int channels, const float *x, const float *y, const float *z, const float *value,
+                                    const float *weight, size_t count, float *c) {
+    if (!shi_samples_ok(order, channels, x, y, z, value, count) || !c)
+        return SH_ERROR_ARGUMENT;
+    for (int k = 0; k < channels; k++) {
+        sh_accum accum;
+        sh_accum_clear(1, &accum);
+        shi_accum_channel(order, x, y, z, value + (size_t)k * count, weight, count, &accum);
+        sh_accum_finish(order, 1, &accum, c + k * SH_COUNT(order));
+    }
+    return SH_OK;
+}
+
+/* Node i of n of Gauss-Legendre quadrature on [-1, 1], descending, by Newton's method on P_n; returns its weight (they sum to 2). */
+SHI_FUNCTION double shi_gauss_legendre(int i, int n, double *node) {
+    double x = cos(SHI_PI * (i + 0.75) / (n + 0.5)), slope = 1.0;
+    for (int step = 0; step < 6; step++) {
+        double p0 = 1.0, p1 = x;
+        for (int l = 2; l <= n; l++) {
+            const double p2 = ((2 * l - 1) * x * p1 - (l - 1) * p0) / l;
+            p0 = p1;
+            p1 = p2;
+        }
+        slope = n * (p0 - x * p1) / (1.0 - x * x);
+        x -= p1 / slope;
+    }
+    *node = x;
+    return 2.0 / ((1.0 - x * x) * slope * slope);
+}
+
+SHI_INLINE void shi_polar_direction(double z, double azimuth, float dir[3]) {
+    const double s = sqrt(z * z < 1.0 ? 1.0 - z * z : 0.0);
+    shi_set3((float)(s * cos(azimuth)), (float)(s * sin(azimuth)), (float)z, dir);
+}
+
+SHI_FUNCTION int sh_project_function(int order, int channels, sh_function f, void *user, int degree, float *c) {
+    if (!shi_order_ok(order) || channels < 1 || channels > SH_MAX_CHANNELS || !f || degree < 0 || degree > 1000 || !c)
+        return SH_ERROR_ARGUMENT;
+    const int rows = (degree + order) / 2 + 1, columns = degree + order + 1;
+    sh_accum accum[SH_MAX_CHANNELS];
+    sh_accum_clear(channels, accum);
+    for (int i = 0; i < rows; i++) {
+        double z;
+        const float weight = (float)shi_gauss_legendre(i, rows, &z);
+        for (int j = 0; j < columns; j++) {
+            float dir[3], value[SH_MAX_CHANNELS];
+            shi_polar_direction(z, 2.0 * SHI_PI * (j + 0.5) / columns, dir);
+            f(dir, value, user);
+            for (int k = 0; k < channels; k++)
+                sh_accum_sample(order, dir, value[k], weight, accum + k);
+        }
+    }
+    sh_accum_finish(order, channels, accum, c);
+    return SH_OK;
+}
+
+/* A bijective hash of 32 bits whose output bits each depend on all input bits (multiply and xor-shift, as in MurmurHash3's finish). */
+SHI_INLINE uint32_t shi_hash(uint32_t x) {
+    x = (x ^ (x >> 16)) * 0x85ebca6bu;
+    x = (x ^ (x >> 13)) * 0xc2b2ae35u;
+    return x ^ (x >> 16);
+}
+
+/* Maps two uniform 32-bit fractions to a direction, area-preserving. */
+SHI_INLINE void shi_square_direction(double u, double v, float dir[3]) {
+    shi_polar_direction(1.0 - 2.0 * v, 2.0 * SHI_PI * u, dir);
+}
+
+SHI_FUNCTION void sh_direction_stratified(uint32_t i, uint32_t columns, uint32_t rows, uint32_t seed, float dir[3]) {
+    const double unit = 1.0 / 4294967296.0; /* 2^-32 */
+    const uint32_t a = shi_hash(i ^ shi_hash(seed)), b = shi_hash(a ^ 0x9e3779b9u);
+    shi_square_direction((i % columns + (a + 0.5) * unit) / columns, (i / columns % rows + (b + 0.5) * unit) / rows, dir);
+}
+
+SHI_FUNCTION void sh_direction_sequence(uint32_t i, uint32_t seed, float dir[3]) {
+    const double unit = 1.0 / 4294967296.0; /* 2^-32 */
+    const uint32_t a = shi_hash(seed), b = shi_hash(a ^ 0x9e3779b9u);
+    /* 2^32 / g and 2^32 / g^2, where g^3 = g + 1; unsigned arithmetic takes the fraction exactly. */
+    const uint32_t u = a + i * 3242174889u, v = b + i * 2447445414u;
+    shi_square_direction((u + 0.5) * unit, (v + 0.5) * unit, dir);
+}
+
+SHI_FUNCTION void sh_direction_fibonacci(uint32_t i, uint32_t count, float dir[3]) {
+    const double golden = 0.61803398874989484820; /* (sqrt 5 - 1) / 2 */
+    const double turns = i * golden;
+    shi_square_direction(turns - floor(turns), (i + 0.5) / count, dir);
+}
+
+#ifndef SH_NO_BATCH
+/* ---- Vector vocabulary: the only place with intrinsics --------------------------------------------------------------------------
+ * A kernel below is written once, on these operations; scalar is the backend of one lane. shi_v is a vector of SHI_LANES floats,
+ * shi_m a mask of as many, shi_i of as many 32-bit integers. Loads and stores take any alignment. Only shi_madd may fuse. */
+
+#if defined(SH_NO_SIMD)
+#undef SH_SIMD
+#define SH_SIMD SH_SIMD_SCALAR
+#endif
+
+#if defined(__AVX512F__)
+#define SHI_HAS_AVX512 1
+#else
+#define SHI_HAS_AVX512 0
+#endif
+#if defined(__AVX2__) && (defined(__FMA__) || defined(_MSC_VER))
+#define SHI_HAS_AVX2 1
+#else
+#define SHI_HAS_AVX2 0
+#endif
+#if defined(__SSE2__) || defined(_M_X64) || (defined(_M_IX86_FP) && _M_IX86_FP >= 2)
+#define SHI_HAS_SSE2 1
+#else
+#define SHI_HAS_SSE2 0
+#endif
+#if (defined(__ARM_NEON) && defined(__ARMEL__)) || defined(__AARCH64EL__) || defined(_M_ARM64)
+#define SHI_HAS_NEON 1
+#else
+#define SHI_HAS_NEON 0
+#endif
+#if defined(__wasm_simd128__)
+#define SHI_HAS_WASM 1
+#else
+#define SHI_HAS_WASM 0
+#endif
+
+#ifndef SH_SIMD
+#if SHI_HAS_AVX512
+#define SH_SIMD SH_SIMD_AVX512
+#elif SHI_HAS_AVX2
+#define SH_SIMD SH_SIMD_AVX2
+#elif SHI_HAS_SSE2
+#define SH_SIMD SH_SIMD_SSE2
+#elif SHI_HAS_NEON
+#define SH_SIMD SH_SIMD_NEON
+#elif SHI_HAS_WASM
+#define SH_SIMD SH_SIMD_WASM
+#else
+#define SH_SIMD SH_SIMD_SCALAR
+#endif
+#endif
+
+#if SH_SIMD == SH_SIMD_AVX512
+#if !SHI_HAS_AVX512
+#error "SH_SIMD is SH_SIMD_AVX512, but the compiler's target has no AVX-512F"
+#endif
+#include <immintrin.h>
+#define SH_SIMD_NAME "AVX-512"
+#define SHI_LANES 16
+typedef __m512 shi_v;
+typedef __m512i shi_i;
+typedef __mmask16 shi_m;
+SHI_INLINE shi_v shi_splat(float a) { return _mm512_set1_ps(a); }
+SHI_INLINE shi_v shi_load(const void *p) { return _mm512_loadu_ps(p); }
+SHI_INLINE void shi_store(void *p, shi_v a) { _mm512_storeu_ps(p, a); }
+SHI_INLINE shi_v shi_add(shi_v a, shi_v b) { return _mm512_add_ps(a, b); }
+SHI_INLINE shi_v shi_sub(shi_v a, shi_v b) { return _mm512_sub_ps(a, b); }
+SHI_INLINE shi_v shi_mul(shi_v a, shi_v b) { return _mm512_mul_ps(a, b); }
+SHI_INLINE shi_v shi_div(shi_v a, shi_v b) { return _mm512_div_ps(a, b); }
+SHI_INLINE shi_v shi_madd(shi_v a, shi_v b, shi_v c) { return _mm512_fmadd_ps(a, b, c); }
+SHI_INLINE shi_v shi_min(shi_v a, shi_v b) { return _mm512_min_ps(a, b); }
+SHI_INLINE shi_v shi_max(shi_v a, shi_v b) { return _mm512_max_ps(a, b); }
+SHI_INLINE shi_v shi_sqrt(shi_v a) { return _mm512_sqrt_ps(a); }
+SHI_INLINE shi_v shi_abs(shi_v a) { return _mm512_abs_ps(a); }
+SHI_INLINE shi_v shi_or(shi_v a, shi_v b) {
+    return _mm512_castsi512_ps(_mm512_or_si512(_mm512_castps_si512(a), _mm512_castps_si512(b)));
+}
+SHI_INLINE shi_m shi_less(shi_v a, shi_v b) { return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ); }
+SHI_INLINE shi_v shi_select(shi_m m, shi_v a, shi_v b) { return _mm512_mask_blend_ps(m, b, a); }
+SHI_INLINE shi_i shi_iload16(const void *p) { return _mm512_cvtepu16_epi32(_mm256_loadu_si256((const __m256i *)p)); }
+SHI_INLINE shi_i shi_iload32(const void *p) { return _mm512_loadu_si512(p); }
+SHI_INLINE shi_i shi_iand(shi_i a, int b) { return _mm512_and_si512(a, _mm512_set1_epi32(b)); }
+SHI_INLINE shi_i shi_iadd(shi_i a, int b) { return _mm512_add_epi32(a, _mm512_set1_epi32(b)); }
+SHI_INLINE shi_i shi_shl(shi_i a, int n) { return _mm512_sll_epi32(a, _mm_cvtsi32_si128(n)); }
+SHI_INLINE shi_i shi_shr(shi_i a, int n) { return _mm512_srl_epi32(a, _mm_cvtsi32_si128(n)); }
+SHI_INLINE shi_v shi_as_float(shi_i a) { return _mm512_castsi512_ps(a); }
+SHI_INLINE shi_v shi_to_float(shi_i a) { return _mm512_cvtepi32_ps(a); }
+
+#elif SH_SIMD == SH_SIMD_AVX2
+#if !SHI_HAS_AVX2
+#error "SH_SIMD is SH_SIMD_AVX2, but the compiler's target has no AVX2 with FMA"
+#endif
+#include <immintrin.h>
+#define SH_SIMD_NAME "AVX2+FMA"
+#define SHI_LANES 8
+typedef __m256 shi_v;
+typedef __m256i shi_i;
+typedef __m256 shi_m;
+SHI_INLINE shi_v shi_splat(float a) { return _mm256_set1_ps(a); }
+SHI_INLINE shi_v shi_load(const void *p) { return _mm256_loadu_ps((const float *)p); }
+SHI_INLINE void shi_store(void *p, shi_v a) { _mm256_storeu_ps((float *)p, a); }
+SHI_INLINE shi_v shi_add(shi_v a, shi_v b) { return _mm256_add_ps(a, b); }
+SHI_INLINE shi_v shi_sub(shi_v a, shi_v b) { return _mm256_sub_ps(a, b); }
+SHI_INLINE shi_v shi_mul(shi_v a, shi_v b) { return _mm256_mul_ps(a, b); }
+SHI_INLINE shi_v shi_div(shi_v a, shi_v b) { return _mm256_div_ps(a, b); }
+SHI_INLINE shi_v shi_madd(shi_v a, shi_v b, shi_v c) { return _mm256_fmadd_ps(a, b, c); }
+SHI_INLINE shi_v shi_min(shi_v a, shi_v b) { return _mm256_min_ps(a, b); }
+SHI_INLINE shi_v shi_max(shi_v a, shi_v b) { return _mm256_max_ps(a, b); }
+SHI_INLINE shi_v shi_sqrt(shi_v a) { return _mm256_sqrt_ps(a); }
+SHI_INLINE shi_v shi_abs(shi_v a) { return _mm256_andnot_ps(_mm256_set1_ps(-0.0f), a); }
+SHI_INLINE shi_v shi_or(shi_v a, shi_v b) { return _mm256_or_ps(a, b); }
+SHI_INLINE shi_m shi_less(shi_v a, shi_v b) { return _mm256_cmp_ps(a, b, _CMP_LT_OQ); }
+SHI_INLINE shi_v shi_select(shi_m m, shi_v a, shi_v b) { return _mm256_blendv_ps(b, a, m); }
+SHI_INLINE shi_i shi_iload16(const void *p) { return _mm256_cvtepu16_epi32(_mm_loadu_si128((const __m128i *)p)); }
+SHI_INLINE shi_i shi_iload32(const void *p) { return _mm256_loadu_si256((const __m256i *)p); }
+SHI_INLINE shi_i shi_iand(shi_i a, int b) { return _mm256_and_si256(a, _mm256_set1_epi32(b)); }
+SHI_INLINE shi_i shi_iadd(shi_i a, int b) { return _mm256_add_epi32(a, _mm256_set1_epi32(b)); }
+SHI_INLINE shi_i shi_shl(shi_i a, int n) { return _mm256_sll_epi32(a, _mm_cvtsi32_si128(n)); }
+SHI_INLINE shi_i shi_shr(shi_i a, int n) { return _mm256_srl_epi32(a, _mm_cvtsi32_si128(n)); }
+SHI_INLINE shi_v shi_as_float(shi_i a) { return _mm256_castsi256_ps(a); }
+SHI_INLINE shi_v shi_to_float(shi_i a) { return _mm256_cvtepi32_ps(a); }
+
+#elif SH_SIMD == SH_SIMD_SSE2
+#if !SHI_HAS_SSE2
+#error "SH_SIMD is SH_SIMD_SSE2, but the compiler's target has no SSE2"
+#endif
+#include <emmintrin.h>
+#define SH_SIMD_NAME "SSE2"
+#define SHI_LANES 4
+typedef __m128 shi_v;
+typedef __m128i shi_i;
+typedef __m128 shi_m;
+SHI_INLINE shi_v shi_splat(float a) { return _mm_set1_ps(a); }
+SHI_INLINE shi_v shi_load(const void *p) { return _mm_loadu_ps((const float *)p); }
+SHI_INLINE void shi_store(void *p, shi_v a) { _mm_storeu_ps((float *)p, a); }
+SHI_INLINE shi_v shi_add(shi_v a, shi_v b) { return _mm_add_ps(a, b); }
+SHI_INLINE shi_v shi_sub(shi_v a, shi_v b) { return _mm_sub_ps(a, b); }
+SHI_INLINE shi_v shi_mul(shi_v a, shi_v b) { return _mm_mul_ps(a, b); }
+SHI_INLINE shi_v shi_div(shi_v a, shi_v b) { return _mm_div_ps(a, b); }
+SHI_INLINE shi_v shi_madd(shi_v a, shi_v b, shi_v c) { return _mm_add_ps(_mm_mul_ps(a, b), c); }
+SHI_INLINE shi_v shi_min(shi_v a, shi_v b) { return _mm_min_ps(a, b); }
+SHI_INLINE shi_v shi_max(shi_v a, shi_v b) { return _mm_max_ps(a, b); }
+SHI_INLINE shi_v shi_sqrt(shi_v a) { return _mm_sqrt_ps(a); }
+SHI_INLINE shi_v shi_abs(shi_v a) { return _mm_andnot_ps(_mm_set1_ps(-0.0f), a); }
+SHI_INLINE shi_v shi_or(shi_v a, shi_v b) { return _mm_or_ps(a, b); }
+SHI_INLINE shi_m shi_less(shi_v a, shi_v b) { return _mm_cmplt_ps(a, b); }
+SHI_INLINE shi_v shi_select(shi_m m, shi_v a, shi_v b) { return _mm_or_ps(_mm_and_ps(m, a), _mm_andnot_ps(m, b)); }
+SHI_INLINE shi_i shi_iload16(const void *p) {
+    return _mm_unpacklo_epi16(_mm_loadl_epi64((const __m128i *)p), _mm_setzero_si128());
+}
+SHI_INLINE shi_i shi_iload32(const void *p) { return _mm_loadu_si128((const __m128i *)p); }
+SHI_INLINE shi_i shi_iand(shi_i a, int b) { return _mm_and_si128(a, _mm_set1_epi32(b)); }
+SHI_INLINE shi_i shi_iadd(shi_i a, int b) { return _mm_add_epi32(a, _mm_set1_epi32(b)); }
+SHI_INLINE shi_i shi_shl(shi_i a, int n) { return _mm_sll_epi32(a, _mm_cvtsi32_si128(n)); }
+SHI_INLINE shi_i shi_shr(shi_i a, int n) { return _mm_srl_epi32(a, _mm_cvtsi32_si128(n)); }
+SHI_INLINE shi_v shi_as_float(shi_i a) { return _mm_castsi128_ps(a); }
+SHI_INLINE shi_v shi_to_float(shi_i a) { return _mm_cvtepi32_ps(a); }
+
+#elif SH_SIMD == SH_SIMD_NEON
+#if !SHI_HAS_NEON
+#error "SH_SIMD is SH_SIMD_NEON, but the compiler's target has no little-endian NEON"
+#endif
+#include <arm_neon.h>
+#define SH_SIMD_NAME "NEON"
+#define SHI_LANES 4
+typedef float32x4_t shi_v;
+typedef int32x4_t shi_i;
+typedef uint32x4_t shi_m;
+SHI_INLINE shi_v shi_splat(float a) { return vdupq_n_f32(a); }
+SHI_INLINE shi_v shi_load(const void *p) { return vreinterpretq_f32_u8(vld1q_u8((const uint8_t *)p)); }
+SHI_INLINE void shi_store(void *p, shi_v a) { vst1q_u8((uint8_t *)p, vreinterpretq_u8_f32(a)); }
+SHI_INLINE shi_v shi_add(shi_v a, shi_v b) { return vaddq_f32(a, b); }
+SHI_INLINE shi_v shi_sub(shi_v a, shi_v b) { return vsubq_f32(a, b); }
+SHI_INLINE shi_v shi_mul(shi_v a, shi_v b) { return vmulq_f32(a, b); }
+#if defined(__aarch64__) || defined(_M_ARM64)
+SHI_INLINE shi_v shi_div(shi_v a, shi_v b) { return vdivq_f32(a, b); }
+SHI_INLINE shi_v shi_sqrt(shi_v a) { return vsqrtq_f32(a); }
+#else
+/* 32-bit NEON has estimates only; division and square root lane by lane are correctly rounded and not in any inner loop's way. */
+SHI_INLINE shi_v shi_div(shi_v a, shi_v b) {
+    float x[4], y[4];
+    vst1q_f32(x, a);
+    vst1q_f32(y, b);
+    for (int i = 0; i < 4; i++)
+        x[i] /= y[i];
+    return vld1q_f32(x);
+}
+SHI_INLINE shi_v shi_sqrt(shi_v a) {
+    float x[4];
+    vst1q_f32(x, a);
+    for (int i = 0; i < 4; i++)
+        x[i] = sqrtf(x[i]);
+    return vld1q_f32(x);
+}
+#endif
+#if defined(__ARM_FEATURE_FMA) || defined(_M_ARM64)
+SHI_INLINE shi_v shi_madd(shi_v a, shi_v b, shi_v c) { return vfmaq_f32(c, a, b); }
+#else
+SHI_INLINE shi_v shi_madd(shi_v a, shi_v b, shi_v c) { return vaddq_f32(vmulq_f32(a, b), c); }
+#endif
+SHI_INLINE shi_v shi_min(shi_v a, shi_v b) { return vbslq_f32(vcltq_f32(a, b), a, b); }
+SHI_INLINE shi_v shi_max(shi_v a, shi_v b) { return vbslq_f32(vcgtq_f32(a, b), a, b); }
+SHI_INLINE shi_v shi_abs(shi_v a) { return vabsq_f32(a); }
+SHI_INLINE shi_v shi_or(shi_v a, shi_v b) {
+    return vreinterpretq_f32_u32(vorrq_u32(vreinterpretq_u32_f32(a), vreinterpretq_u32_f32(b)));
+}
+SHI_INLINE shi_m shi_less(shi_v a, shi_v b) { return vcltq_f32(a, b); }
+SHI_INLINE shi_v shi_select(shi_m m, shi_v a, shi_v b) { return vbslq_f32(m, a, b); }
+SHI_INLINE shi_i shi_iload16(const void *p) {
+    return vreinterpretq_s32_u32(vmovl_u16(vreinterpret_u16_u8(vld1_u8((const uint8_t *)p))));
+}
+SHI_INLINE shi_i shi_iload32(const void *p) { return vreinterpretq_s32_u8(vld1q_u8((const uint8_t *)p)); }
+SHI_INLINE shi_i shi_iand(shi_i a, int b) { return vandq_s32(a, vdupq_n_s32(b)); }
+SHI_INLINE shi_i shi_iadd(shi_i a, int b) { return vaddq_s32(a, vdupq_n_s32(b)); }
+SHI_INLINE shi_i shi_shl(shi_i a, int n) { return vshlq_s32(a, vdupq_n_s32(n)); }
+SHI_INLINE shi_i shi_shr(shi_i a, int n) {
+    return vreinterpretq_s32_u32(vshlq_u32(vreinterpretq_u32_s32(a), vdupq_n_s32(-n)));
+}
+SHI_INLINE shi_v shi_as_float(shi_i a) { return vreinterpretq_f32_s32(a); }
+SHI_INLINE shi_v shi_to_float(shi_i a) { return vcvtq_f32_s32(a); }
+
+#elif SH_SIMD == SH_SIMD_WASM
+#if !SHI_HAS_WASM
+#error "SH_SIMD is SH_SIMD_WASM, but the compiler's target has no WebAssembly SIMD"
+#endif
+#include <wasm_simd128.h>
+#define SH_SIMD_NAME "WebAssembly SIMD"
+#define SHI_LANES 4
+typedef v128_t shi_v;
+typedef v128_t shi_i;
+typedef v128_t shi_m;
+SHI_INLINE shi_v shi_splat(float a) { return wasm_f32x4_splat(a); }
+SHI_INLINE shi_v shi_load(const void *p) { return wasm_v128_load(p); }
+SHI_INLINE void shi_store(void *p, shi_v a) { wasm_v128_store(p, a); }
+SHI_INLINE shi_v shi_add(shi_v a, shi_v b) { return wasm_f32x4_add(a, b); }
+SHI_INLINE shi_v shi_sub(shi_v a, shi_v b) { return wasm_f32x4_sub(a, b); }
+SHI_INLINE shi_v shi_mul(shi_v a, shi_v b) { return wasm_f32x4_mul(a, b); }
+SHI_INLINE shi_v shi_div(shi_v a, shi_v b) { return wasm_f32x4_div(a, b); }
+SHI_INLINE shi_v shi_madd(shi_v a, shi_v b, shi_v c) { return wasm_f32x4_add(wasm_f32x4_mul(a, b), c); }
+SHI_INLINE shi_v shi_min(shi_v a, shi_v b) { return wasm_f32x4_pmin(b, a); }
+SHI_INLINE shi_v shi_max(shi_v a, shi_v b) { return wasm_f32x4_pmax(b, a); }
+SHI_INLINE shi_v shi_sqrt(shi_v a) { return wasm_f32x4_sqrt(a); }
+SHI_INLINE shi_v shi_abs(shi_v a) { return wasm_f32x4_abs(a); }
+SHI_INLINE shi_v shi_or(shi_v a, shi_v b) { return wasm_v128_or(a, b); }
+SHI_INLINE shi_m shi_less(shi_v a, shi_v b) { return wasm_f32x4_lt(a, b); }
+SHI_INLINE shi_v shi_select(shi_m m, shi_v a, shi_v b) { return wasm_v128_bitselect(a, b, m); }
+SHI_INLINE shi_i shi_iload16(const void *p) { return wasm_u32x4_load16x4(p); }
+SHI_INLINE shi_i shi_iload32(const void *p) { return wasm_v128_load(p); }
+SHI_INLINE shi_i shi_iand(shi_i a, int b) { return wasm_v128_and(a, wasm_i32x4_splat(b)); }
+SHI_INLINE shi_i shi_iadd(shi_i a, int b) { return wasm_i32x4_add(a, wasm_i32x4_splat(b)); }
+SHI_INLINE shi_i shi_shl(shi_i a, int n) { return wasm_i32x4_shl(a, (uint32_t)n); }
+SHI_INLINE shi_i shi_shr(shi_i a, int n) { return wasm_u32x4_shr(a, (uint32_t)n); }
+SHI_INLINE shi_v shi_as_float(shi_i a) { return a; }
+SHI_INLINE shi_v shi_to_float(shi_i a) { return wasm_f32x4_convert_i32x4(a); }
+
+#elif SH_SIMD == SH_SIMD_SCALAR
+#define SH_SIMD_NAME "scalar"
+#define SHI_LANES 1
+typedef float shi_v;
+typedef int32_t shi_i;
+typedef int shi_m;
+SHI_INLINE shi_v shi_splat(float a) { return a; }
+SHI_INLINE shi_v shi_load(const void *p) {
+    shi_v a;
+    memcpy(&a, p, sizeof a);
+    return a;
+}
+SHI_INLINE void shi_store(void *p, shi_v a) { memcpy(p, &a, sizeof a); }
+SHI_INLINE shi_v shi_add(shi_v a, shi_v b) { return a + b; }
+SHI_INLINE shi_v shi_sub(shi_v a, shi_v b) { return a - b; }
+SHI_INLINE shi_v shi_mul(shi_v a, shi_v b) { return a * b; }
+SHI_INLINE shi_v shi_div(shi_v a, shi_v b) { return a / b; }
+SHI_INLINE shi_v shi_madd(shi_v a, shi_v b, shi_v c) { return a * b + c; }
+SHI_INLINE shi_v shi_min(shi_v a, shi_v b) { return a < b ? a : b; }
+SHI_INLINE shi_v shi_max(shi_v a, shi_v b) { return a > b ? a : b; }
+SHI_INLINE shi_v shi_sqrt(shi_v a) { return sqrtf(a); }
+SHI_INLINE shi_v shi_abs(shi_v a) { return fabsf(a); }
+SHI_INLINE shi_i shi_iload16(const void *p) {
+    uint16_t a;
+    memcpy(&a, p, sizeof a);
+    return a;
+}
+SHI_INLINE shi_i shi_iload32(const void *p) {
+    shi_i a;
+    memcpy(&a, p, sizeof a);
+    return a;
+}
+SHI_INLINE shi_i shi_iand(shi_i a, int b) { return a & b; }
+SHI_INLINE shi_i shi_iadd(shi_i a, int b) { return (shi_i)((uint32_t)a + (uint32_t)b); }
+SHI_INLINE shi_i shi_shl(shi_i a, int n) { return (shi_i)((uint32_t)a << n); }
+SHI_INLINE shi_i shi_shr(shi_i a, int n) { return (shi_i)((uint32_t)a >> n); }
+SHI_INLINE shi_v shi_as_float(shi_i a) { return shi_load(&a); }
+SHI_INLINE shi_v shi_to_float(shi_i a) { return (float)a; }
+SHI_INLINE shi_m shi_less(shi_v a, shi_v b) { return a < b; }
+SHI_INLINE shi_v shi_select(shi_m m, shi_v a, shi_v b) { return m ? a : b; }
+SHI_INLINE shi_v shi_or(shi_v a, shi_v b) {
+    shi_i x = shi_iload32(&a) | shi_iload32(&b);
+    return shi_load(&x);
+}
+
+#else
+#error "SH_SIMD is not one of the SH_SIMD_... numbers"
+#endif
+
+
+/* Four bytes a lane as a word whose low byte is the first. */
+SHI_INLINE shi_i shi_iload_bytes(const unsigned char *p) {
+#if SHI_LANES == 1
+    return (shi_i)((uint32_t)p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24);
+#else
+    return shi_iload32(p);
+#endif
+}
+
+/* ---- Images ---------------------------------------------------------------------------------------------------------------------
+ * Rows are read in blocks of SHI_BLOCK pixels: in place where they are clean floats, decoded to floats otherwise; a last partial
+ * block is padded with black. Float vectors add up a row, doubles the rows. */
+
+enum { SHI_BLOCK = 128, SHI_PHASES = 4 };
+
+/* How texels lie in memory, and in the blocks that the kernels read: `planes` planes of `interleave` interleaved channels. */
+typedef struct shi_layout {
+    int channels;      /* colour channels: 1 or 3 */
+    int interleave;    /* channels per pixel in a plane */
+    int planes;
+    size_t pixel_size; /* bytes */
+} shi_layout;
+
+/* 0 for a format and a number of channels that do not exist. */
+SHI_FUNCTION int shi_image_layout(const sh_image *image, shi_layout *layout) {
+    const int n = image->channels;
+    const int packed = image->format == SH_RGBE8 || image->format == SH_RGB9E5;
+    const int size = image->format == SH_F32 ? 4 : image->format == SH_F16 ? 2 : image->format == SH_SRGB8 ? 1 : 0;
+    if (packed ? n != 3 && n != 4 : !size || (n != 1 && n != 3 && n != 4))
+        return 0;
+    layout->channels = n == 1 ? 1 : 3;
+    layout->interleave = packed ? 1 : n;
+    layout->planes = packed ? 3 : 1;
+    layout->pixel_size = packed ? 4 : (size_t)(n * size);
+    return 1;
+}
+
+SHI_FUNCTION int sh_image_channels(const sh_image *image) {
+    return image->channels == 1 ? 1 : 3;
+}
+
+SHI_FUNCTION int shi_image_check(const sh_image *image, shi_layout *layout) {
+    if (!image || !image->pixels)
+        return SH_ERROR_ARGUMENT;
+    if (!shi_image_layout(image, layout))
+        return SH_ERROR_FORMAT;
+    const size_t limit = (size_t)-1 / 2;
+    if (image->width < 1 || image->height < 1 || (size_t)image->width > limit / layout->pixel_size)
+        return SH_ERROR_SIZE;
+    const size_t row = (size_t)image->width * layout->pixel_size, stride = image->row_stride ? image->row_stride : row;
+    return stride < row || (size_t)image->height > limit / stride ? SH_ERROR_SIZE : SH_OK;
+}
+
+/* Reads an image's texels as floats. */
+typedef struct shi_reader {
+    const sh_image *image;
+    shi_layout layout;
+    size_t stride;
+    unsigned flags;
+    int careful;     /* look at every value: leave out, clamp, count in `report` */
+    float scale;     /* what careful reading multiplies values by: below 1 if their sum overflows */
+    sh_report report;
+    float srgb[256]; /* linear value of an sRGB byte */
+} shi_reader;
+
+/* t^(1/5) for t in [0.004, 1], by Newton's method. */
+SHI_FUNCTION double shi_fifth_root(double t) {
+    double y = 1.0;
+    for (int i = 0; i < 12; i++)
+        y += (t / (y * y * y * y) - y) / 5.0;
+    return y;
+}
+
+/* IEC 61966-2-1: b / 12.92 up to 0.04045, ((b + 0.055) / 1.055)^2.4 above. */
+SHI_FUNCTION float shi_srgb_to_linear(int byte) {
+    const double b = byte / 255.0, t = (b + 0.055) / 1.055, root = b > 0.04045 ? shi_fifth_root(t) : 0.0;
+    return (float)(b > 0.04045 ? t * t * root * root : b / 12.92);
+}
+
+SHI_FUNCTION void shi_reader_init(const sh_image *image, const shi_layout *layout, unsigned flags, shi_reader *reader) {
+    reader->image = image;
+    reader->layout = *layout;
+    reader->stride = image->row_stride ? image->row_stride : (size_t)image->width * layout->pixel_size;
+    reader->flags = flags;
+    reader->careful = 0;
+    reader->scale = 1.0f;
+    reader->report.texels = reader->report.nonfinite = reader->report.negative = 0;
+    if (image->format == SH_SRGB8)
+        for (int i = 0; i < 256; i++)
+            reader->srgb[i] = shi_srgb_to_linear(i);
+}
+
+/* Halves to floats. Infinite and NaN become infinite. Subnormal halves go through an integer, so that flush-to-zero spares them. */
+SHI_INLINE shi_v shi_half_to_float(shi_i h) {
+    const shi_i magnitude = shi_iand(h, 0x7fff), sign = shi_shl(shi_shr(h, 15), 31);
+    const shi_v subnormal = shi_mul(shi_to_float(magnitude), shi_splat(1.0f / 16777216.0f));    /* 2^-24 */
+    const shi_v normal = shi_as_float(shi_iadd(shi_shl(magnitude, 13), 112 << 23));
+    const shi_v finite = shi_select(shi_less(subnormal, shi_splat(1.0f / 16384.0f)), subnormal, normal);
+    const shi_v value = shi_select(shi_less(finite, shi_splat(65520.0f)), finite, shi_as_float(shi_iadd(shi_iand(h, 0), 0x7f800000)));
+    return shi_or(value, shi_as_float(sign));
+}
+
+SHI_INLINE void shi_decode_f16(const unsigned char *in, int count, float *out) {
+    for (int i = 0; i < count; i += SHI_LANES)
+        shi_store(out + i, shi_half_to_float(shi_iload16(in + 2 * i)));
+}
+
+/* A word of three mantissas of `bits` bits each, lowest first, and an exponent whose scale is given. */
+SHI_INLINE void shi_unpack_rgb(shi_i word, int bits, shi_v scale, float *out) {
+    for (int k = 0; k < 3; k++)
+        shi_store(out + k * SHI_BLOCK, shi_mul(shi_to_float(shi_iand(shi_shr(word, k * bits), (1 << bits) - 1)), scale));
+}
+
+SHI_INLINE void shi_decode_rgbe8(const unsigned char *in, float *out) {
+    for (int i = 0; i < SHI_BLOCK; i += SHI_LANES) {
+        const shi_i word = shi_iload_bytes(in + 4 * i), e = shi_shr(word, 24);
+        const shi_v scale = shi_as_float(shi_shl(shi_iadd(e, -9), 23)); /* 2^(e - 136) */
+        shi_unpack_rgb(word, 8, shi_select(shi_less(shi_to_float(e), shi_splat(10.0f)), shi_splat(0.0f), scale), out + i);
+    }
+}
+
+SHI_INLINE void shi_decode_rgb9e5(const unsigned char *in, float *out) {
+    for (int i = 0; i < SHI_BLOCK; i += SHI_LANES) {
+        const shi_i word = shi_iload32(in + 4 * i);
+        shi_unpack_rgb(word, 9, shi_as_float(shi_shl(shi_iadd(shi_shr(word, 27), 103), 23)), out + i); /* 2^(e - 24) */
+    }
+}
+
+SHI_INLINE void shi_decode_srgb8(const unsigned char *in, const float *srgb, int count, float *out) {
+    for (int i = 0; i < count; i++)
+        out[i] = srgb[in[i]];
+}
+
+/* Looks at the bits: -ffast-math cannot remove it. */
+SHI_INLINE int shi_is_finite(float a) {
+    uint32_t bits;
+    memcpy(&bits, &a, sizeof bits);
+    return (bits & 0x7f800000u) != 0x7f800000u;
+}
+
+/* Leaves out, clamps, counts and scales, in a decoded block of `count` pixels. */
+SHI_FUNCTION void shi_clean(shi_reader *reader, int count, float *pixels) {
+    const int stride = reader->layout.interleave, channels = reader->layout.channels;
+    for (int i = 0; i < count; i++) {
+        float *texel = pixels + i * stride;
+        int finite = 1, negative = 0;
+        for (int k = 0; k < channels; k++)
+            finite &= shi_is_finite(texel[k]);
+        for (int k = 0; k < channels; k++) {
+            negative |= finite && texel[k] < 0.0f;
+            texel[k] = !finite || (texel[k] < 0.0f && (reader->flags & SH_CLAMP_NEGATIVE)) ? 0.0f : reader->scale * texel[k];
+        }
+        reader->report.nonfinite += !finite;
+        reader->report.negative += (uint64_t)negative;
+    }
+}
+
+/* Pixels x to x + count of a row, count <= SHI_BLOCK, as a block of floats, padded with black: in place or in `scratch`. */
+typedef struct shi_scratch {
+    unsigned char raw[SHI_BLOCK * 16];
+    float decoded[SHI_BLOCK * 4];
+} shi_scratch;
+
+SHI_FUNCTION const void *shi_read_block(shi_reader *reader, int row, int x, int count, shi_scratch *scratch) {
+    const size_t size = reader->layout.pixel_size;
+    const unsigned char *in = (const unsigned char *)reader->image->pixels + (size_t)row * reader->stride + (size_t)x * size;
+    const int values = SHI_BLOCK * reader->layout.interleave;
+    if (count < SHI_BLOCK) {
+        memset(scratch->raw, 0, SHI_BLOCK * size);
+        memcpy(scratch->raw, in, (size_t)count * size);
+        in = scratch->raw;
+    }
+    switch (reader->image->format) {
+    case SH_F32:
+        if (!reader->careful)
+            return in;
+        memcpy(scratch->decoded, in, (size_t)values * sizeof(float));
+        break;
+    case SH_F16: shi_decode_f16(in, values, scratch->decoded); break;
+    case SH_RGBE8: shi_decode_rgbe8(in, scratch->decoded); break;
+    case SH_RGB9E5: shi_decode_rgb9e5(in, scratch->decoded); break;
+    case SH_SRGB8: shi_decode_srgb8(in, reader->srgb, values, scratch->decoded); break;
+    }
+    if (reader->careful && reader->layout.planes == 1)
+        shi_clean(reader, count, scratch->decoded);
+    return scratch->decoded;
+}
+
+/* ---- Equirectangular panoramas --------------------------------------------------------------------------------------------------
+ * A row needs five sums over its texels: L times 1, cos p, sin p, cos 2p, sin 2p. Two texels half a turn apart share their
+ * functions up to sign, so they are folded first. Within a block p is counted from the block's first column: all blocks share one
+ * small table, and their sums are turned to the block's azimuth. */
+
+enum { SHI_SUM, SHI_COS1, SHI_SIN1, SHI_COS2, SHI_SIN2, SHI_SUMS };
+
+typedef struct shi_fold_sums {
+    shi_v sum, cos1, sin1, cos2, sin2;
+} shi_fold_sums;
+
+/* Functions of the columns of a block, one per float: cos p, sin p, cos 2p, sin 2p. */
+typedef struct shi_azimuth_table {
+    float cos1[SHI_BLOCK * 4], sin1[SHI_BLOCK * 4], cos2[SHI_BLOCK * 4], sin2[SHI_BLOCK * 4];
+} shi_azimuth_table;
+
+SHI_FUNCTION void shi_azimuth_table_init(int width, int interleave, shi_azimuth_table *table) {
+    for (int i = 0; i < SHI_BLOCK; i++) {
+        const double p = 2.0 * SHI_PI * (i + 0.5) / width, c = cos(p), s = sin(p);
+        for (int j = i * interleave; j < (i + 1) * interleave; j++) {
+            table->cos1[j] = (float)c;
+            table->sin1[j] = (float)s;
+            table->cos2[j] = (float)(c * c - s * s);
+            table->sin2[j] = (float)(2.0 * c * s);
+        }
+    }
+}
+
+/* Adds a vector of texels and the one half a turn further. */
+SHI_INLINE void shi_fold_add(int order, shi_v here, shi_v opposite, const shi_azimuth_table *table, int i, shi_fold_sums *s) {
+    const shi_v even = shi_add(here, opposite);
+    s->sum = shi_add(s->sum, even);
+    if (order >= SH_L1) {
+        const shi_v odd = shi_sub(here, opposite);
+        s->cos1 = shi_madd(odd, shi_load(table->cos1 + i), s->cos1);
+        s->sin1 = shi_madd(odd, shi_load(table->sin1 + i), s->sin1);
+    }
+    if (order >= SH_L2) {
+        s->cos2 = shi_madd(even, shi_load(table->cos2 + i), s->cos2);
+        s->sin2 = shi_madd(even, shi_load(table->sin2 + i), s->sin2);
+    }
+}
+
+/* total += the sums of a block whose first column is at azimuth p: c1, s1, c2, s2 are the cosine and sine of p and of 2p. */
+SHI_INLINE void shi_fold_turn(int order, const shi_fold_sums *s, const float turn[4], shi_v total[SHI_SUMS]) {
+    total[SHI_SUM] = shi_add(total[SHI_SUM], s->sum);
+    if (order >= SH_L1) {
+        const shi_v c1 = shi_splat(turn[0]), s1 = shi_splat(turn[1]), minus_s1 = shi_splat(-turn[1]);
+        total[SHI_COS1] = shi_madd(c1, s->cos1, shi_madd(minus_s1, s->sin1, total[SHI_COS1]));
+        total[SHI_SIN1] = shi_madd(s1, s->cos1, shi_madd(c1, s->sin1, total[SHI_SIN1]));
+    }
+    if (order >= SH_L2) {
+        const shi_v c2 = shi_splat(turn[2]), s2 = shi_splat(turn[3]), minus_s2 = shi_splat(-turn[3]);
+        total[SHI_COS2] = shi_madd(c2, s->cos2, shi_madd(minus_s2, s->sin2, total[SHI_COS2]));
+        total[SHI_SIN2] = shi_madd(s2, s->cos2, shi_madd(c2, s->sin2, total[SHI_SIN2]));
+    }
+}
+
+/* Vectors after which interleaved channels fall on the same lanes again. */
+SHI_INLINE int shi_phases(int interleave) {
+    return SHI_LANES == 1 ? interleave : interleave == 3 ? 3 : 1;
+}
+
+/* Float sums of two rows; vectors of interleaved channels repeat every `phases`. */
+typedef struct shi_row_sums {
+    shi_v total[2][SHI_PHASES][SHI_SUMS];
+    shi_v signs;
+} shi_row_sums;
+
+/* Adds a block of two rows: here[r] and, half a turn further, opposite[r]. `first` is the plane's first phase. */
+SHI_INLINE void shi_fold_block(int order, const unsigned char *const here[2], const unsigned char *const opposite[2], int count, int phases,
+                               const shi_azimuth_table *table, const float turn[4], int first, shi_row_sums *sums) {
+    const shi_v zero = shi_splat(0.0f);
+    shi_v signs = sums->signs;
+    for (int phase = 0; phase < phases; phase++) {
+        shi_fold_sums a = { zero, zero, zero, zero, zero }, b = a;
+        for (int i = phase * SHI_LANES; i < count; i += phases * SHI_LANES) {
+            const size_t at = (size_t)i * sizeof(float);
+            const shi_v here_a = shi_load(here[0] + at), opposite_a = shi_load(opposite[0] + at);
+            const shi_v here_b = shi_load(here[1] + at), opposite_b = shi_load(opposite[1] + at);
+            signs = shi_or(signs, shi_or(shi_or(here_a, opposite_a), shi_or(here_b, opposite_b)));
+            shi_fold_add(order, here_a, opposite_a, table, i, &a);
+            shi_fold_add(order, here_b, opposite_b, table, i, &b);
+        }
+        shi_fold_turn(order, &a, turn, sums->total[0][first + phase]);
+        shi_fold_turn(order, &b, turn, sums->total[1][first + phase]);
+    }
+    sums->signs = signs;
+}
+
+/* Sums of one plane's vectors by channel: out[k] is the sum of all floats whose index is k modulo `interleave`. Halves the vectors,
+ * whose length is a power of two times interleave. */
+SHI_INLINE void shi_sum_lanes(const shi_v *vectors, size_t step, int phases, int interleave, float *out) {
+    float lanes[SHI_PHASES * SHI_LANES];
+    for (int phase = 0; phase < phases; phase++)
+        shi_store(lanes + phase * SHI_LANES, vectors[(size_t)phase * step]);
+    for (int n = phases * SHI_LANES / 2; n >= interleave; n /= 2)
+        for (int i = 0; i < n; i++)
+            lanes[i] += lanes[i + n];
+    for (int k = 0; k < interleave; k++)
+        out[k] = lanes[k];
+}
+
+/* Mean over a row's polar angle t of functions of it, times the row's share of the sphere. */
+typedef struct shi_row_weights {
+    double one, cos, sin, cos_cos, sin_cos;
+} shi_row_weights;
+
+/* Area texels: closed integrals between the row's edges. */
+SHI_FUNCTION void shi_row_weights_area(int row, int height, shi_row_weights *w) {
+    const double t0 = SHI_PI * row / height, t1 = SHI_PI * (row + 1) / height;
+    const double c0 = cos(t0), s0 = sin(t0), c1 = cos(t1), s1 = sin(t1);
+    w->one = (c0 - c1) / 2;
+    w->cos = (s1 * s1 - s0 * s0) / 4;
+    w->sin = (t1 - t0 - (s1 * c1 - s0 * c0)) / 4;
+    w->cos_cos = (c0 * c0 * c0 - c1 * c1 * c1) / 6;
+    w->sin_cos = (s1 * s1 * s1 - s0 * s0 * s0) / 6;
+}
+
+/* Point texels: Fejer's first rule, 1/H (1 - 2 sum_k cos(2 k t) / (4 k^2 - 1)), k <= H/2; exact for polynomials in cos t below
+ * degree H. The cosines by their recurrence. */
+SHI_FUNCTION void shi_row_weights_point(int row, int height, shi_row_weights *w) {
+    const double t = SHI_PI * (row + 0.5) / height, c = cos(t), s = sin(t), cos2 = c * c - s * s;
+    double sum = 0.5, previous = 1.0, current = cos2;
+    for (int k = 1; k <= height / 2; k++) {
+        const double next = 2.0 * cos2 * current - previous;
+        sum -= current / (4.0 * k * k - 1.0);
+        previous = current;
+        current = next;
+    }
+    w->one = 2.0 * sum / height;
+    w->cos = w->one * c;
+    w->sin = w->one * s;
+    w->cos_cos = w->one * c * c;
+    w->sin_cos = w->one * s * c;
+}
+
+/* Spreads a row's five means over azimuth into the nine sums. */
+SHI_FUNCTION void shi_row_spread(const shi_row_weights *w, const double mean[SHI_SUMS], sh_accum *accum) {
+    const double third = w->one * mean[SHI_SUM] / 3, half = (w->one - w->cos_cos) / 2;
+    double *sum = accum->sum;
+    sum[SH_R0] += w->one * mean[SHI_SUM];
+    sum[SH_X] += w->sin * mean[SHI_COS1];
+    sum[SH_Y] += w->sin * mean[SHI_SIN1];
+    sum[SH_Z] += w->cos * mean[SHI_SUM];
+    sum[SH_XX] += half * (mean[SHI_SUM] + mean[SHI_COS2]) - third;
+    sum[SH_XY] += half * mean[SHI_SIN2];
+    sum[SH_XZ] += w->sin_cos * mean[SHI_COS1];
+    sum[SH_YY] += half * (mean[SHI_SUM] - mean[SHI_COS2]) - third;
+    sum[SH_YZ] += w->sin_cos * mean[SHI_SIN1];
+    accum->weight += w->one;
+}
+
+/* Reads two rows (the second may be the first again: then it is read once) and sums them. */
+SHI_INLINE void shi_fold_rows(int order, shi_reader *reader, const shi_azimuth_table *table, int row, int rows, shi_row_sums *sums) {
+    const int width = reader->image->width, half = width % 2 ? width : width / 2;
+    const int interleave = reader->layout.interleave, phases = shi_phases(interleave);
+    const double block_angle = 2.0 * SHI_PI * SHI_BLOCK / width, block_cos = cos(block_angle), block_sin = sin(block_angle);
+    double c = 1.0, s = 0.0;
+    shi_scratch scratch[4];
+    memset(sums, 0, sizeof *sums);
+    for (int x = 0; x < half; x += SHI_BLOCK) {
+        const int count = half - x < SHI_BLOCK ? half - x : SHI_BLOCK, count_opposite = half < width ? count : 0;
+        const float turn[4] = { (float)c, (float)s, (float)(c * c - s * s), (float)(2.0 * c * s) };
+        const unsigned char *here[2], *opposite[2];
+        for (int r = 0; r < 2; r++) {
+            here[r] = r < rows ? shi_read_block(reader, row + r, x, count, &scratch[2 * r]) : here[0];
+            opposite[r] = r < rows ? shi_read_block(reader, row + r, half % width + x, count_opposite, &scratch[2 * r + 1]) : opposite[0];
+        }
+        for (int plane = 0; plane < reader->layout.planes; plane++) {
+            shi_fold_block(order, here, opposite, SHI_BLOCK * interleave, phases, table, turn, plane, sums);
+            for (int r = 0; r < 2; r++) {
+                here[r] += SHI_BLOCK * sizeof(float);
+                opposite[r] += SHI_BLOCK * sizeof(float);
+            }
+        }
+        const double next = c * block_cos - s * block_sin;
+        s = s * block_cos + c * block_sin;
+        c = next;
+    }
+}
+
+/* The means over azimuth of one row's five functions, per colour channel; returns 0 if one is not finite. */
+SHI_FUNCTION int shi_fold_means(int order, const shi_reader *reader, const shi_v total[SHI_PHASES][SHI_SUMS], double mean[3][SHI_SUMS]) {
+    const shi_layout *layout = &reader->layout;
+    const int phases = shi_phases(layout->interleave);
+    const double width = reader->image->width, step = SHI_PI / width, unit = 1.0 / (width * (double)reader->scale);
+    const int point = (reader->flags & SH_POINT_TEXELS) != 0;
+    /* What a texel's width does to each frequency; points see none of those that are constant on all columns. */
+    const double smear[3] = { 1.0, point ? width > 1 : sin(step) / step, point ? width > 2 : sin(2 * step) / (2 * step) };
+    const double sense = reader->flags & SH_CLOCKWISE ? -1.0 : 1.0;
+    int finite = 1;
+    for (int i = 0; i < (order == SH_L0 ? 1 : order == SH_L1 ? 3 : SHI_SUMS); i++) {
+        const double factor = unit * smear[(i + 1) / 2];
+        float sum[SHI_PHASES];
+        for (int plane = 0; plane < layout->planes; plane++)
+            shi_sum_lanes(&total[plane][i], SHI_SUMS, phases, layout->interleave, sum + plane);
+        for (int k = 0; k < layout->channels; k++) {
+            finite &= shi_is_finite(sum[k]);
+            mean[k][i] = factor * (double)sum[k] * (i == SHI_SIN1 || i == SHI_SIN2 ? sense : 1.0);
+        }
+    }
+    return finite;
+}
+
+/* Whether any value read had its sign bit set. */
+SHI_INLINE int shi_any_sign(shi_v signs) {
+    uint32_t bits[SHI_LANES], any = 0;
+    shi_store(bits, signs);
+    for (int i = 0; i < SHI_LANES; i++)
+        any |= bits[i];
+    return (any >> 31) != 0;
+}
+
+/* The means of one or two rows. Values are looked at one by one only where a row's sums say that something is wrong with one of
+ * them, and once more, scaled down, where finite values overflow. */
+SHI_INLINE void shi_equirect_means(int order, shi_reader *reader, const shi_azimuth_table *table, int row, int rows, int count_negative,
+                                   double mean[2][3][SHI_SUMS]) {
+    for (int attempt = 0; attempt < 3; attempt++) {
+        shi_row_sums sums;
+        reader->careful = attempt > 0;
+        reader->scale = attempt < 2 ? 1.0f : 1.0f / 16777216.0f; /* 2^-24, more than the columns of any image in memory add */
+        const sh_report before = reader->report;
+        shi_fold_rows(order, reader, table, row, rows, &sums);
+        int finite = 1;
+        for (int r = 0; r < rows; r++)
+            finite &= shi_fold_means(order, reader, sums.total[r], mean[r]);
+        if (finite && (reader->careful || !count_negative || !shi_any_sign(sums.signs)))
+            return;
+        if (attempt < 2)
+            reader->report = before;
+    }
+}
+
+SHI_INLINE int shi_equirect_rows(int order, const sh_image *image, unsigned flags, int first_row, int row_count, sh_accum *accum,
+                                 sh_report *report) {
+    shi_layout layout;
+    const int status = shi_image_check(image, &layout);
+    if (status != SH_OK)
+        return status;
+    if (!accum || flags & ~(unsigned)(SH_CLAMP_NEGATIVE | SH_POINT_TEXELS | SH_CLOCKWISE))
+        return SH_ERROR_ARGUMENT;
+    if (first_row < 0 || row_count < 0 || first_row > image->height - row_count)
+        return SH_ERROR_SIZE;
+    shi_reader reader;
+    shi_azimuth_table table;
+    shi_reader_init(image, &layout, flags, &reader);
+    shi_azimuth_table_init(image->width, layout.interleave, &table);
+    for (int row = first_row; row < first_row + row_count; row += 2) {
+        double mean[2][3][SHI_SUMS] = { { { 0 } } };
+        const int rows = first_row + row_count - row < 2 ? 1 : 2;
+        shi_equirect_means(order, &reader, &table, row, rows, report || flags & SH_CLAMP_NEGATIVE, mean);
+        for (int r = 0; r < rows; r++) {
+            shi_row_weights w;
+            if (flags & SH_POINT_TEXELS)
+                shi_row_weights_point(row + r, image->height, &w);
+            else
+                shi_row_weights_area(row + r, image->height, &w);
+            for (int k = 0; k < layout.channels; k++)
+                shi_row_spread(&w, mean[r][k], accum + k);
+        }
+    }
+    if (report) {
+        report->texels += (uint64_t)row_count * (uint64_t)image->width;
+        report->nonfinite += reader.report.nonfinite;
+        report->negative += reader.report.negative;
+    }
+    return SH_OK;
+}
+
+SHI_FUNCTION int shi_equirect_rows_l0(const sh_image *image, unsigned flags, int first_row, int row_count, sh_accum *accum,
+                                      sh_report *report) {
+    return shi_equirect_rows(SH_L0, image, flags, first_row, row_count, accum, report);
+}
+SHI_FUNCTION int shi_equirect_rows_l1(const sh_image *image, unsigned flags, int first_row, int row_count, sh_accum *accum,
+                                      sh_report *report) {
+    return shi_equirect_rows(SH_L1, image, flags, first_row, row_count, accum, report);
+}
+SHI_FUNCTION int shi_equirect_rows_l2(const sh_image *image, unsigned flags, int first_row, int row_count, sh_accum *accum,
+                                      sh_report *report) {
+    return shi_equirect_rows(SH_L2, image, flags, first_row, row_count, accum, report);
+}
+
+SHI_INLINE int sh_project_equirect_rows(int order, const sh_image *image, unsigned flags, int first_row, int row_count,
+                                        sh_accum *accum, sh_report *report) {
+    switch (order) {
+    case SH_L0: return shi_equirect_rows_l0(image, flags, first_row, row_count, accum, report);
+    case SH_L1: return shi_equirect_rows_l1(image, flags, first_row, row_count, accum, report);
+    case SH_L2: return shi_equirect_rows_l2(image, flags, first_row, row_count, accum, report);
+    default: return SH_ERROR_ARGUMENT;
+    }
+}
+
+SHI_INLINE int sh_project_equirect(int order, const sh_image *image, unsigned flags, float *c, sh_report *report) {
+    sh_accum accum[3];
+    sh_report found = { 0, 0, 0 };
+    if (!image || !c)
+        return SH_ERROR_ARGUMENT;
+    sh_accum_clear(3, accum);
+    const int status = sh_project_equirect_rows(order, image, flags, 0, image->height, accum, report ? &found : NULL);
+    if (status != SH_OK)
+        return status;
+    sh_accum_total(order, sh_image_channels(image), accum, c);
+    if (report)
+        *report = found;
+    return SH_OK;
+}
+#endif /* SH_NO_BATCH */
+
+#endif /* SH_H */
+
+/* MIT License
+ *
+ * Copyright (c) 2026 the sh.h authors
+ *
+ * Permission is hereby granted, free of charge, to any person obtaining a copy of this software and associated documentation files
+ * (the "Software"), to deal in the Software without restriction, including without limitation the rights to use, copy, modify, merge,
+ * publish, distribute, sublicense, and/or sell copies of the Software, and to permit persons to whom the Software is furnished to do
+ * so, subject to the following conditions:
+ *
+ * The above copyright notice and this permission notice shall be included in all copies or substantial portions of the Software.
+ *
+ * THE SOFTWARE IS PROVIDED "AS IS", WITHOUT WARRANTY OF ANY KIND, EXPRESS OR IMPLIED, INCLUDING BUT NOT LIMITED TO THE WARRANTIES OF
+ * MERCHANTABILITY, FITNESS FOR A PARTICULAR PURPOSE AND NONINFRINGEMENT. IN NO EVENT SHALL THE AUTHORS OR COPYRIGHT HOLDERS BE LIABLE
+ * FOR ANY CLAIM, DAMAGES OR OTHER LIABILITY, WHETHER IN AN ACTION OF CONTRACT, TORT OR OTHERWISE, ARISING FROM, OUT OF OR IN
+ * CONNECTION WITH THE SOFTWARE OR THE USE OR OTHER DEALINGS IN THE SOFTWARE. */
