@@ -1,4 +1,4 @@
-# README's two commands, as a newcomer types them on a fresh clone.
+# README's two commands, as a newcomer types them on a fresh clone: build/ is removed first.
 need_cmake
 need_gcc
 need pkg-config pkg-config
@@ -14,5 +14,11 @@ demo() {
     test -x build/bin/shlight
 }
 
+named() {
+    grep -F "cmake --workflow --preset demo" README.md
+    grep -F "cmake --workflow --preset test" README.md
+}
+
 check "cmake --workflow --preset test" fresh cmake --workflow --preset test
 check "cmake --workflow --preset demo" demo
+check "README names its two commands" named
