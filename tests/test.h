@@ -151,6 +151,19 @@ static inline void *test_allocate(size_t size) {
     return memory;
 }
 
+static inline void test_write_nan(void) {
+    volatile double garbage[1 << 14];
+    for (int i = 0; i < 1 << 14; i++)
+        garbage[i] = (double)NAN;
+    (void)garbage[0];
+}
+
+/* Leaves NaN on the stack, where the next call's variables will be: one that is read before it is written shows. */
+static inline void test_dirty_stack(void) {
+    void (*volatile write)(void) = test_write_nan; /* a call through it is not inlined */
+    write();
+}
+
 int main(void) {
     test_seed(1);
     run_tests();

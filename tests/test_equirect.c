@@ -8,6 +8,7 @@ static void check_against_oracle(const sh_image *image, unsigned flags) {
     const oracle_projection expected = oracle_project_equirect(image, flags);
     float c[3 * SH_COUNT(SH_L2)];
     sh_report report = { 9, 9, 9 };
+    test_dirty_stack();
     EQUAL(sh_project_equirect(SH_L2, image, flags, c, &report), SH_OK);
     test_projection_near(SH_L2, sh_image_channels(image), c, &expected);
     EQUAL(report.texels, expected.texels);

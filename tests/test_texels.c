@@ -65,6 +65,7 @@ static void check(const test_image *of, unsigned flags) {
     const oracle_projection expected = oracle_project_equirect(&of->image, flags);
     float c[3 * 9];
     sh_report report = { 9, 9, 9 };
+    test_dirty_stack();
     EQUAL(sh_project_equirect(SH_L2, &of->image, flags, c, &report), SH_OK);
     test_projection_near(SH_L2, sh_image_channels(&of->image), c, &expected);
     EQUAL(report.texels, expected.texels);
