@@ -64,6 +64,13 @@
 #endif
 #define SHI_FUNCTION static inline
 
+/* Before a loop over the coefficients of a set: GCC leaves it rolled at -O2. */
+#if defined(__GNUC__) && !defined(__clang__)
+#define SHI_UNROLL _Pragma("GCC unroll 9")
+#else
+#define SHI_UNROLL
+#endif
+
 /* ---- Types and constants ------------------------------------------------------------------------------------------------------ */
 
 enum { SH_L0, SH_L1, SH_L2 };                                        /* order: the highest band */
@@ -225,7 +232,7 @@ SHI_INLINE int sh_accum_samples(int order, int channels, const float *x, const f
 typedef enum sh_format {
     SH_F32,    /* float */
     SH_F16,    /* IEEE half */
-    SH_RGBE8,  /* Radiance: bytes r, g, b, e; radiance = m 2^(e - 136); exponents below 10 (< 2e-36) read as black. 3 channels in 4 bytes */
+    SH_RGBE8,  /* Radiance: bytes r, g, b, e; radiance = m 2^(e - 136), 0 for e = 0, e = 255 as 254. 3 channels in 4 bytes */
     SH_RGB9E5, /* shared exponent in a native 32-bit word, red in the low 9 bits; radiance = m 2^(e - 24). 3 channels in 4 bytes */
     SH_SRGB8   /* bytes with the sRGB transfer curve; 255 is radiance 1 */
 } sh_format;
@@ -306,16 +313,19 @@ SHI_INLINE void sh_basis(int order, const float dir[3], float *basis) {
 }
 
 SHI_INLINE void sh_scale(int order, const float *c, float scale, float *out) {
+    SHI_UNROLL
     for (int i = 0; i < SH_COUNT(order); i++)
         out[i] = scale * c[i];
 }
 
 SHI_INLINE void sh_madd(int order, const float *a, float scale, float *c) {
+    SHI_UNROLL
     for (int i = 0; i < SH_COUNT(order); i++)
         c[i] += scale * a[i];
 }
 
 SHI_INLINE void sh_lerp(int order, const float *a, const float *b, float t, float *out) {
+    SHI_UNROLL
     for (int i = 0; i < SH_COUNT(order); i++)
         out[i] = (1.0f - t) * a[i] + t * b[i];
 }
@@ -449,6 +459,7 @@ SHI_FUNCTION void sh_zonal_laplacian(float lambda, float zonal[3]) {
 }
 
 SHI_INLINE void sh_convolve(int order, const float *c, const float zonal[3], float *out) {
+    SHI_UNROLL
     for (int i = 0; i < SH_COUNT(order); i++)
         out[i] = zonal[i < 1 ? 0 : i < 4 ? 1 : 2] * c[i];
 }
@@ -801,8 +812,8 @@ SHI_INLINE shi_i shi_iload16(const void *p) { return _mm256_cvtepu16_epi32(_mm_l
 SHI_INLINE shi_i shi_iload32(const void *p) { return _mm256_loadu_si256((const __m256i *)p); }
 SHI_INLINE shi_i shi_iand(shi_i a, int b) { return _mm256_and_si256(a, _mm256_set1_epi32(b)); }
 SHI_INLINE shi_i shi_iadd(shi_i a, int b) { return _mm256_add_epi32(a, _mm256_set1_epi32(b)); }
-SHI_INLINE shi_i shi_shl(shi_i a, int n) { return _mm256_sll_epi32(a, _mm_cvtsi32_si128(n)); }
-SHI_INLINE shi_i shi_shr(shi_i a, int n) { return _mm256_srl_epi32(a, _mm_cvtsi32_si128(n)); }
+SHI_INLINE shi_i shi_shl(shi_i a, int n) { return _mm256_slli_epi32(a, n); }
+SHI_INLINE shi_i shi_shr(shi_i a, int n) { return _mm256_srli_epi32(a, n); }
 SHI_INLINE shi_v shi_as_float(shi_i a) { return _mm256_castsi256_ps(a); }
 SHI_INLINE shi_v shi_to_float(shi_i a) { return _mm256_cvtepi32_ps(a); }
 SHI_INLINE void shi_transpose4(shi_v v[4]) {
@@ -856,8 +867,8 @@ SHI_INLINE shi_i shi_iload16(const void *p) {
 SHI_INLINE shi_i shi_iload32(const void *p) { return _mm_loadu_si128((const __m128i *)p); }
 SHI_INLINE shi_i shi_iand(shi_i a, int b) { return _mm_and_si128(a, _mm_set1_epi32(b)); }
 SHI_INLINE shi_i shi_iadd(shi_i a, int b) { return _mm_add_epi32(a, _mm_set1_epi32(b)); }
-SHI_INLINE shi_i shi_shl(shi_i a, int n) { return _mm_sll_epi32(a, _mm_cvtsi32_si128(n)); }
-SHI_INLINE shi_i shi_shr(shi_i a, int n) { return _mm_srl_epi32(a, _mm_cvtsi32_si128(n)); }
+SHI_INLINE shi_i shi_shl(shi_i a, int n) { return _mm_slli_epi32(a, n); }
+SHI_INLINE shi_i shi_shr(shi_i a, int n) { return _mm_srli_epi32(a, n); }
 SHI_INLINE shi_v shi_as_float(shi_i a) { return _mm_castsi128_ps(a); }
 SHI_INLINE shi_v shi_to_float(shi_i a) { return _mm_cvtepi32_ps(a); }
 SHI_INLINE void shi_transpose4(shi_v v[4]) { _MM_TRANSPOSE4_PS(v[0], v[1], v[2], v[3]); }
@@ -1201,15 +1212,19 @@ SHI_INLINE void shi_evaluate_soa(int order, const shi_soa *job) {
     for (size_t i = 0; i < count; i += SHI_BATCH) {
         const size_t n = shi_at_most(count - i, SHI_BATCH);
         const size_t whole = copy ? 0 : n / SHI_LANES * SHI_LANES, rest = n - whole; /* in place; through a copy */
+        float fold[2][SH_COUNT(SH_L2)]; /* the next channel is folded while this one is evaluated */
         shi_block block;
         if (rest) {
             shi_copy_padded(x + i + whole, rest, block.x);
             shi_copy_padded(y + i + whole, rest, block.y);
             shi_copy_padded(z + i + whole, rest, block.z);
         }
+        shi_polynomial_fold(order, job->c, job->w1, job->w2, fold[0]);
         for (int k = 0; k < job->channels; k++) {
-            float polynomial[SH_COUNT(SH_L2)], *out = job->out + (size_t)k * count + i;
-            shi_polynomial_fold(order, job->c + k * SH_COUNT(order), job->w1, job->w2, polynomial);
+            const float *polynomial = fold[k % 2];
+            float *out = job->out + (size_t)k * count + i;
+            if (k + 1 < job->channels)
+                shi_polynomial_fold(order, job->c + (k + 1) * SH_COUNT(order), job->w1, job->w2, fold[(k + 1) % 2]);
             shi_evaluate(order, polynomial, x + i, y + i, z + i, out, whole);
             if (rest) {
                 shi_evaluate(order, polynomial, block.x, block.y, block.z, block.out, shi_round_up(rest));
@@ -1641,14 +1656,13 @@ SHI_FUNCTION int shi_reader_init(const sh_image *image, int images, unsigned fla
     return SH_OK;
 }
 
-/* Halves to floats. Infinite and NaN become infinite. Subnormal halves go through an integer, so that flush-to-zero spares them. */
+/* Halves to floats: the exponent is rebiased by a multiplication, which brings subnormals along (under denormals-are-zero they read
+ * as 0: < 6.2e-5). Infinity and NaN become infinite. */
 SHI_INLINE shi_v shi_half_to_float(shi_i h) {
-    const shi_i magnitude = shi_iand(h, 0x7fff), sign = shi_shl(shi_shr(h, 15), 31);
-    const shi_v subnormal = shi_mul(shi_to_float(magnitude), shi_splat(1.0f / 16777216.0f));    /* 2^-24 */
-    const shi_v normal = shi_as_float(shi_iadd(shi_shl(magnitude, 13), 112 << 23));
-    const shi_v finite = shi_select(shi_less(subnormal, shi_splat(1.0f / 16384.0f)), subnormal, normal);
-    const shi_v value = shi_select(shi_less(finite, shi_splat(65520.0f)), finite, shi_as_float(shi_iadd(shi_iand(h, 0), 0x7f800000)));
-    return shi_or(value, shi_as_float(sign));
+    const shi_v rebias = shi_splat(5192296858534827628530496329220096.0f); /* 2^112 */
+    const shi_v magnitude = shi_mul(shi_as_float(shi_shl(shi_iand(h, 0x7fff), 13)), rebias);
+    const shi_v value = shi_select(shi_less(magnitude, shi_splat(65536.0f)), magnitude, shi_as_float(shi_iadd(shi_iand(h, 0), 0x7f800000)));
+    return shi_or(value, shi_as_float(shi_shl(shi_shr(h, 15), 31)));
 }
 
 SHI_INLINE void shi_decode_f16(const unsigned char *in, int count, float *out) {
@@ -1664,9 +1678,10 @@ SHI_INLINE void shi_unpack_rgb(shi_i word, int bits, shi_v scale, float *out) {
 
 SHI_INLINE void shi_decode_rgbe8(const unsigned char *in, int count, float *out) {
     for (int i = 0; i < count; i += SHI_LANES) {
-        const shi_i word = shi_iload_bytes(in + 4 * i), e = shi_shr(word, 24);
-        const shi_v scale = shi_as_float(shi_shl(shi_iadd(e, -9), 23)); /* 2^(e - 136) */
-        shi_unpack_rgb(word, 8, shi_select(shi_less(shi_to_float(e), shi_splat(10.0f)), shi_splat(0.0f), scale), out + i);
+        const shi_i word = shi_iload_bytes(in + 4 * i);
+        const shi_v power = shi_as_float(shi_iand(shi_shr(word, 1), 0x7f800000)); /* 2^(e - 127); 0 for e = 0 */
+        const shi_v highest = shi_splat(170141183460469231731687303715884105728.0f); /* 2^127 */
+        shi_unpack_rgb(word, 8, shi_mul(shi_min(power, highest), shi_splat(1.0f / 512)), out + i);
     }
 }
 
