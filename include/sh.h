@@ -156,6 +156,52 @@ SHI_FUNCTION float sh_average_direction(const float *c, float dir[3]);
  * radiance, R0 - intensity / 4, not negative for a real light. c has `channels` sets of order >= 1. */
 SHI_FUNCTION void sh_dominant_light(int order, int channels, const float *c, float dir[3], float *intensity, float *ambient);
 
+/* ---- Operators: one channel, unless they say otherwise --------------------------------------------------------------------------- */
+
+/* Product of the two radiance reconstructions, kept to `order`: light times visibility, environment times mask. Bands of the product
+ * above `order` are dropped. Error <= 4e-7 of |a| |b|. At L2, with S = (AB + BA)/2 and dev() the symmetric traceless part:
+ *     a0 b0 + 3 a1.b1 + 15/2 A:B,   a0 b1 + b0 a1 + 3 (A b1 + B a1),   a0 B + b0 A + 6/5 dev(a1 b1') + 30/7 dev(S). */
+SHI_INLINE void sh_product(int order, const float *a, const float *b, float *out);
+
+/* The light turned by an orthogonal matrix, row-major: what came from d comes from m d. Reflections (determinant -1) included.
+ * R1 -> m R1, R2 -> m R2 m'. Error <= 4e-7 of |c| for |m m' - I| <= 1e-7; never normalised for you. */
+SHI_INLINE void sh_rotate(int order, const float *c, const float m[9], float *out);
+
+/* Row-major matrix of the rotation by quaternion q = x, y, z, w of any length; the identity if q = 0. */
+SHI_FUNCTION void sh_rotation_from_quaternion(const float q[4], float m[9]);
+
+/* The light in other axes: new axis i is old axis |axis[i]| (1 = x, 2 = y, 3 = z), negated if axis[i] < 0. Exact but for zz's rounding.
+ * axis is a signed permutation of 1, 2, 3, not checked. From right-handed z up: { 1, 3, -2 } is right-handed y up (OpenGL, Godot,
+ * three.js), { 1, 3, 2 } left-handed y up (Unity, Babylon, Direct3D), { 1, -2, 3 } left-handed z up (Unreal). */
+SHI_INLINE void sh_swap_axes(int order, const float *c, const int axis[3], float *out);
+SHI_INLINE void sh_z_up_to_y_up(int order, const float *c, float *out);                         /* (x, y, z) -> (x, z, -y) */
+SHI_INLINE void sh_y_up_to_z_up(int order, const float *c, float *out);                         /* its inverse: (x, -z, y) */
+
+/* Radiance from dir through a zonal kernel: c convolved, then looked at. With sh_zonal_ggx and the mirrored view: a specular probe. */
+SHI_INLINE float sh_radiance_zonal(int order, const float *c, const float zonal[3], const float dir[3]);
+
+/* The direction in which unit vector `view`, pointing to the eye, is mirrored by unit normal n: 2 (n.view) n - view. */
+SHI_INLINE void sh_reflect(const float view[3], const float n[3], float out[3]);
+
+/* More kernels, as in "Zonal kernels": of mean 1.
+ * cosine_power: max(0, t)^exponent, exponent >= 0: 1, (s + 1)/(s + 2), s/(s + 3). 0 is the hemisphere, 1 is Lambert.
+ * ggx: the GGX lobe of width alpha (the square of most engines' roughness), in [0, 1], about the mirrored view, seen along the normal
+ *     and weighted by the cosine, as split-sum prefiltering does: 0 is a mirror (1, 1, 1), 1 is Lambert. Error 1e-7. Walter et al.,
+ *     "Microfacet Models for Refraction through Rough Surfaces", 2007; Karis, "Real Shading in Unreal Engine 4", 2013.
+ * sharpness: 1 + s t, the adjustable probe of first-order lighting: 0 averages, 1 is half Lambert, 2 the linear part of Lambert,
+ *     3 the L1 radiance. Not negative for any light if s <= 1. It has no second band. */
+SHI_FUNCTION void sh_zonal_cosine_power(float exponent, float zonal[3]);
+SHI_FUNCTION void sh_zonal_ggx(float alpha, float zonal[3]);
+SHI_FUNCTION void sh_zonal_sharpness(float sharpness, float zonal[3]);
+
+#ifndef SH_NO_BATCH
+/* sh_rotate of `sets` sets in a row, by one matrix: channels, probes, or both. An RGB probe is three sets. */
+SHI_FUNCTION void sh_rotate_batch(int order, const float *c, const float m[9], float *out, size_t sets);
+
+/* sh_product of `count` pairs in planes: coefficient i of pair p is a[i * count + p], and so for b and out. */
+SHI_FUNCTION void sh_product_batch(int order, const float *a, const float *b, float *out, size_t count);
+#endif
+
 /* ---- Projection from samples and functions -------------------------------------------------------------------------------------- */
 
 SHI_FUNCTION void sh_accum_clear(int channels, sh_accum *accum);
@@ -620,6 +666,151 @@ SHI_FUNCTION void sh_direction_fibonacci(uint32_t i, uint32_t count, float dir[3
     shi_square_direction(turns - floor(turns), (i + 0.5) / count, dir);
 }
 
+/* ---- Operators ------------------------------------------------------------------------------------------------------------------ */
+
+SHI_INLINE void sh_product(int order, const float *a, const float *b, float *out) {
+    const float a0 = a[SH_R0], b0 = b[SH_R0];
+    if (order < SH_L1) {
+        out[SH_R0] = a0 * b0;
+        return;
+    }
+    const float ax = a[SH_X], ay = a[SH_Y], az = a[SH_Z], bx = b[SH_X], by = b[SH_Y], bz = b[SH_Z];
+    const float x = ax * bx, y = ay * by, z = az * bz, dot = x + y + z;
+    if (order < SH_L2) {
+        out[SH_R0] = a0 * b0 + 3.0f * dot;
+        out[SH_X] = a0 * bx + b0 * ax;
+        out[SH_Y] = a0 * by + b0 * ay;
+        out[SH_Z] = a0 * bz + b0 * az;
+        return;
+    }
+    const float axx = a[SH_XX], axy = a[SH_XY], axz = a[SH_XZ], ayy = a[SH_YY], ayz = a[SH_YZ], azz = -(axx + ayy);
+    const float bxx = b[SH_XX], bxy = b[SH_XY], bxz = b[SH_XZ], byy = b[SH_YY], byz = b[SH_YZ], bzz = -(bxx + byy);
+    /* Diagonal of AB, and twice the rest of its symmetric part by A's and B's zero trace. */
+    const float xy = axy * bxy, xz = axz * bxz, yz = ayz * byz;
+    const float sxx = axx * bxx + xy + xz, syy = ayy * byy + xy + yz, szz = azz * bzz + xz + yz, trace = sxx + syy + szz;
+    const float sxy = axz * byz + ayz * bxz - axy * bzz - bxy * azz;
+    const float sxz = axy * byz + ayz * bxy - axz * byy - bxz * ayy;
+    const float syz = axy * bxz + axz * bxy - ayz * bxx - byz * axx;
+    const float isotropic = -0.4f * dot - 10.0f / 7.0f * trace; /* what dev() takes from the diagonal */
+    out[SH_R0] = a0 * b0 + 3.0f * dot + 7.5f * trace;
+    out[SH_X] = a0 * bx + b0 * ax + 3.0f * (axx * bx + axy * by + axz * bz + bxx * ax + bxy * ay + bxz * az);
+    out[SH_Y] = a0 * by + b0 * ay + 3.0f * (axy * bx + ayy * by + ayz * bz + bxy * ax + byy * ay + byz * az);
+    out[SH_Z] = a0 * bz + b0 * az + 3.0f * (axz * bx + ayz * by + azz * bz + bxz * ax + byz * ay + bzz * az);
+    out[SH_XX] = a0 * bxx + b0 * axx + 1.2f * x + 30.0f / 7.0f * sxx + isotropic;
+    out[SH_XY] = a0 * bxy + b0 * axy + 0.6f * (ax * by + ay * bx) + 15.0f / 7.0f * sxy;
+    out[SH_XZ] = a0 * bxz + b0 * axz + 0.6f * (ax * bz + az * bx) + 15.0f / 7.0f * sxz;
+    out[SH_YY] = a0 * byy + b0 * ayy + 1.2f * y + 30.0f / 7.0f * syy + isotropic;
+    out[SH_YZ] = a0 * byz + b0 * ayz + 0.6f * (ay * bz + az * by) + 15.0f / 7.0f * syz;
+}
+
+/* m R2 m': of the rows of m R2, only the first two are needed. */
+SHI_INLINE void shi_rotate_second(const float *c, const float m[9], float *out) {
+    const float xx = c[SH_XX], xy = c[SH_XY], xz = c[SH_XZ], yy = c[SH_YY], yz = c[SH_YZ], zz = -(xx + yy);
+    const float px = m[0] * xx + m[1] * xy + m[2] * xz, qx = m[3] * xx + m[4] * xy + m[5] * xz;
+    const float py = m[0] * xy + m[1] * yy + m[2] * yz, qy = m[3] * xy + m[4] * yy + m[5] * yz;
+    const float pz = m[0] * xz + m[1] * yz + m[2] * zz, qz = m[3] * xz + m[4] * yz + m[5] * zz;
+    out[SH_XX] = px * m[0] + py * m[1] + pz * m[2];
+    out[SH_XY] = px * m[3] + py * m[4] + pz * m[5];
+    out[SH_XZ] = px * m[6] + py * m[7] + pz * m[8];
+    out[SH_YY] = qx * m[3] + qy * m[4] + qz * m[5];
+    out[SH_YZ] = qx * m[6] + qy * m[7] + qz * m[8];
+}
+
+SHI_INLINE void sh_rotate(int order, const float *c, const float m[9], float *out) {
+    out[SH_R0] = c[SH_R0];
+    if (order >= SH_L1) {
+        const float v[3] = { c[SH_X], c[SH_Y], c[SH_Z] };
+        shi_set3(shi_dot3(m, v), shi_dot3(m + 3, v), shi_dot3(m + 6, v), out + SH_X);
+    }
+    if (order >= SH_L2)
+        shi_rotate_second(c, m, out);
+}
+
+SHI_FUNCTION void sh_rotation_from_quaternion(const float q[4], float m[9]) {
+    const double x = (double)q[0], y = (double)q[1], z = (double)q[2], w = (double)q[3];
+    const double square = x * x + y * y + z * z + w * w, s = square > 0.0 ? 2.0 / square : 0.0;
+    shi_set3((float)(1 - s * (y * y + z * z)), (float)(s * (x * y - w * z)), (float)(s * (x * z + w * y)), m);
+    shi_set3((float)(s * (x * y + w * z)), (float)(1 - s * (x * x + z * z)), (float)(s * (y * z - w * x)), m + 3);
+    shi_set3((float)(s * (x * z - w * y)), (float)(s * (y * z + w * x)), (float)(1 - s * (x * x + y * y)), m + 6);
+}
+
+SHI_INLINE void sh_swap_axes(int order, const float *c, const int axis[3], float *out) {
+    int from[3];
+    float sign[3];
+    for (int i = 0; i < 3; i++) {
+        from[i] = (axis[i] < 0 ? -axis[i] : axis[i]) - 1;
+        sign[i] = axis[i] < 0 ? -1.0f : 1.0f;
+    }
+    out[SH_R0] = c[SH_R0];
+    if (order >= SH_L1) {
+        const float v[3] = { c[SH_X], c[SH_Y], c[SH_Z] };
+        for (int i = 0; i < 3; i++)
+            out[SH_X + i] = sign[i] * v[from[i]];
+    }
+    if (order >= SH_L2) {
+        const float diagonal[3] = { c[SH_XX], c[SH_YY], -(c[SH_XX] + c[SH_YY]) };
+        const float rest[4] = { 0.0f, c[SH_XY], c[SH_XZ], c[SH_YZ] }; /* of axes i and j: at i + j */
+        out[SH_XX] = diagonal[from[0]];
+        out[SH_XY] = sign[0] * sign[1] * rest[from[0] + from[1]];
+        out[SH_XZ] = sign[0] * sign[2] * rest[from[0] + from[2]];
+        out[SH_YY] = diagonal[from[1]];
+        out[SH_YZ] = sign[1] * sign[2] * rest[from[1] + from[2]];
+    }
+}
+
+SHI_INLINE void sh_z_up_to_y_up(int order, const float *c, float *out) {
+    const int axis[3] = { 1, 3, -2 };
+    sh_swap_axes(order, c, axis, out);
+}
+
+SHI_INLINE void sh_y_up_to_z_up(int order, const float *c, float *out) {
+    const int axis[3] = { 1, -3, 2 };
+    sh_swap_axes(order, c, axis, out);
+}
+
+SHI_INLINE float sh_radiance_zonal(int order, const float *c, const float zonal[3], const float dir[3]) {
+    return shi_reconstruct(order, c, dir, zonal[0], 3.0f * zonal[1], 7.5f * zonal[2]);
+}
+
+SHI_INLINE void sh_reflect(const float view[3], const float n[3], float out[3]) {
+    const float twice = 2.0f * shi_dot3(n, view);
+    shi_set3(twice * n[0] - view[0], twice * n[1] - view[1], twice * n[2] - view[2], out);
+}
+
+SHI_FUNCTION void sh_zonal_cosine_power(float exponent, float zonal[3]) {
+    shi_set3(1.0f, 1.0f - 1.0f / (exponent + 2.0f), 1.0f - 3.0f / (exponent + 3.0f), zonal);
+}
+
+SHI_FUNCTION void sh_zonal_sharpness(float sharpness, float zonal[3]) {
+    shi_set3(1.0f, sharpness / 3.0f, 0.0f, zonal);
+}
+
+/* J[k - 1] = integral over [0, 1] of t^k / (1 - q t)^2, k = 1, 2, 3; rest = 1 - q. By q J[k] = J[k - 1] - I[k - 1], where I[k] is the
+ * integral of t^k / (1 - q t); it cancels for small q: there, the sum of (n + 1) q^n / (n + k + 1), below 1e-12 from n = 48 on. */
+SHI_FUNCTION void shi_ggx_integrals(double q, double rest, double J[3]) {
+    if (q < 0.5) {
+        double power = 1.0;
+        J[0] = J[1] = J[2] = 0.0;
+        for (int n = 0; n < 48; n++, power *= q)
+            for (int k = 1; k <= 3; k++)
+                J[k - 1] += (n + 1) * power / (n + k + 1);
+        return;
+    }
+    const double i0 = -log(rest) / q, i1 = (i0 - 1.0) / q, i2 = (i1 - 0.5) / q;
+    J[0] = (1.0 / rest - i0) / q;
+    J[1] = (J[0] - i1) / q;
+    J[2] = (J[1] - i2) / q;
+}
+
+/* The half vector h between normal and light has h.n^2 = (1 + t)/2, so D(h) ~ (1 - q t)^-2 with q = (1 - a^2) / (1 + a^2). */
+SHI_FUNCTION void sh_zonal_ggx(float alpha, float zonal[3]) {
+    const double a = (double)shi_clamp(alpha, 0.0f, 1.0f), aa = a * a;
+    double J[3] = { 1.0, 1.0, 1.0 };
+    if (a > 1e-9)
+        shi_ggx_integrals((1.0 - aa) / (1.0 + aa), 2.0 * aa / (1.0 + aa), J);
+    shi_set3(1.0f, (float)(J[1] / J[0]), (float)(1.5 * J[2] / J[0] - 0.5), zonal);
+}
+
 #ifndef SH_NO_BATCH
 /* ---- Vector vocabulary: the only place with intrinsics --------------------------------------------------------------------------
  * A kernel below is written once, on these operations; scalar is the backend of one lane. shi_v is a vector of SHI_LANES floats,
@@ -932,6 +1123,164 @@ SHI_INLINE shi_i shi_iload_bytes(const unsigned char *p) {
 #else
     return shi_iload32(p);
 #endif
+}
+
+/* ---- Batches of operators ------------------------------------------------------------------------------------------------------- */
+
+enum {
+    SHI_ROTATED = 8, /* coefficients that turn: x, y, z, xx, xy, xz, yy, yz */
+    SHI_ROTATE_VECTORS = (SHI_ROTATED + SHI_LANES - 1) / SHI_LANES
+};
+
+/* Column j of the matrix that turns the eight coefficients, as vectors over its rows; all of one vector lie together. */
+typedef struct shi_rotation {
+    shi_v column[SHI_ROTATE_VECTORS][SHI_ROTATED];
+} shi_rotation;
+
+/* Rows 3 to 7 of a column are products of entries of two rows i, j of m: (0, 0), (0, 1), (0, 2), (1, 1), (1, 2). They are spread over
+ * the lanes by multiplication with 0 and 1, which is exact and takes no shuffles. */
+SHI_INLINE void shi_rotation_vector(const float m[9], int first, shi_v column[SHI_ROTATED]) {
+    static const float is_i[2][16] = { { 0, 0, 0, 1, 1, 1 }, { 0, 0, 0, 0, 0, 0, 1, 1 } };
+    static const float is_j[3][16] = { { 1, 0, 0, 1 }, { 0, 1, 0, 0, 1, 0, 1 }, { 0, 0, 1, 0, 0, 1, 0, 1 } };
+    static const float is_first_band[16] = { 1, 1, 1 };
+    const shi_v i0 = shi_load(is_i[0] + first), i1 = shi_load(is_i[1] + first), band = shi_load(is_first_band + first);
+    const shi_v j0 = shi_load(is_j[0] + first), j1 = shi_load(is_j[1] + first), j2 = shi_load(is_j[2] + first);
+    shi_v i[3], j[3];
+    for (int k = 0; k < 3; k++) {
+        i[k] = shi_madd(i0, shi_splat(m[k]), shi_mul(i1, shi_splat(m[3 + k])));
+        j[k] = shi_madd(j0, shi_splat(m[k]), shi_madd(j1, shi_splat(m[3 + k]), shi_mul(j2, shi_splat(m[6 + k]))));
+        column[k] = shi_mul(band, j[k]);
+    }
+    const shi_v zz = shi_mul(i[2], j[2]);
+    column[3] = shi_sub(shi_mul(i[0], j[0]), zz);
+    column[4] = shi_madd(i[0], j[1], shi_mul(i[1], j[0]));
+    column[5] = shi_madd(i[0], j[2], shi_mul(i[2], j[0]));
+    column[6] = shi_sub(shi_mul(i[1], j[1]), zz);
+    column[7] = shi_madd(i[1], j[2], shi_mul(i[2], j[1]));
+}
+
+/* c: x of a set. Two chains of additions, so that sets overlap better. */
+SHI_INLINE shi_v shi_rotate_vector(const shi_v column[SHI_ROTATED], const float *c) {
+    shi_v a = shi_mul(column[0], shi_splat(c[0])), b = shi_mul(column[4], shi_splat(c[4]));
+    a = shi_madd(column[1], shi_splat(c[1]), a);
+    b = shi_madd(column[5], shi_splat(c[5]), b);
+    a = shi_madd(column[2], shi_splat(c[2]), a);
+    b = shi_madd(column[6], shi_splat(c[6]), b);
+    a = shi_madd(column[3], shi_splat(c[3]), a);
+    b = shi_madd(column[7], shi_splat(c[7]), b);
+    return shi_add(a, b);
+}
+
+SHI_INLINE void shi_rotate_sets(const float *c, const float m[9], float *out, size_t sets) {
+    shi_rotation rotation;
+    for (int v = 0; v < SHI_ROTATE_VECTORS; v++)
+        shi_rotation_vector(m, v * SHI_LANES, rotation.column[v]);
+    for (size_t s = 0; s < sets; s++, c += SH_COUNT(SH_L2), out += SH_COUNT(SH_L2)) {
+        shi_v turned[SHI_ROTATE_VECTORS];
+        for (int v = 0; v < SHI_ROTATE_VECTORS; v++)
+            turned[v] = shi_rotate_vector(rotation.column[v], c + SH_X);
+        out[SH_R0] = c[SH_R0];
+        memcpy(out + SH_X, turned, SHI_ROTATED * sizeof(float));
+    }
+}
+
+SHI_FUNCTION void sh_rotate_batch(int order, const float *c, const float m[9], float *out, size_t sets) {
+    if (SHI_LANES > 1 && order == SH_L2) {
+        shi_rotate_sets(c, m, out, sets);
+        return;
+    }
+    for (size_t s = 0; s < sets; s++) {
+        const size_t at = s * (size_t)SH_COUNT(order);
+        sh_rotate(order, c + at, m, out + at);
+    }
+}
+
+/* sh_product on vectors: as there, a lane for each pair. */
+SHI_INLINE void shi_product_first(const shi_v *a, const shi_v *b, shi_v *out) {
+    for (int i = SH_X; i <= SH_Z; i++)
+        out[i] = shi_madd(a[SH_R0], b[i], shi_mul(b[SH_R0], a[i]));
+}
+
+/* out += 3 (A v), for a symmetric matrix given by three of its rows' entries at a time. */
+SHI_INLINE shi_v shi_madd_row(shi_v p, shi_v q, shi_v r, const shi_v *v, shi_v sum) {
+    return shi_madd(p, v[SH_X], shi_madd(q, v[SH_Y], shi_madd(r, v[SH_Z], sum)));
+}
+
+SHI_INLINE void shi_product_vectors(int order, const shi_v *a, const shi_v *b, shi_v *out) {
+    out[SH_R0] = shi_mul(a[SH_R0], b[SH_R0]);
+    if (order < SH_L1)
+        return;
+    const shi_v x = shi_mul(a[SH_X], b[SH_X]), y = shi_mul(a[SH_Y], b[SH_Y]), z = shi_mul(a[SH_Z], b[SH_Z]);
+    const shi_v dot = shi_add(shi_add(x, y), z), three = shi_splat(3.0f), zero = shi_splat(0.0f);
+    out[SH_R0] = shi_madd(three, dot, out[SH_R0]);
+    shi_product_first(a, b, out);
+    if (order < SH_L2)
+        return;
+    const shi_v axx = a[SH_XX], axy = a[SH_XY], axz = a[SH_XZ], ayy = a[SH_YY], ayz = a[SH_YZ];
+    const shi_v bxx = b[SH_XX], bxy = b[SH_XY], bxz = b[SH_XZ], byy = b[SH_YY], byz = b[SH_YZ];
+    const shi_v minus_azz = shi_add(axx, ayy), minus_bzz = shi_add(bxx, byy);
+    const shi_v azz = shi_sub(zero, minus_azz), bzz = shi_sub(zero, minus_bzz);
+    const shi_v vx = shi_madd_row(axx, axy, axz, b, shi_madd_row(bxx, bxy, bxz, a, zero));
+    const shi_v vy = shi_madd_row(axy, ayy, ayz, b, shi_madd_row(bxy, byy, byz, a, zero));
+    const shi_v vz = shi_madd_row(axz, ayz, azz, b, shi_madd_row(bxz, byz, bzz, a, zero));
+    out[SH_X] = shi_madd(three, vx, out[SH_X]);
+    out[SH_Y] = shi_madd(three, vy, out[SH_Y]);
+    out[SH_Z] = shi_madd(three, vz, out[SH_Z]);
+
+    const shi_v xy = shi_mul(axy, bxy), xz = shi_mul(axz, bxz), yz = shi_mul(ayz, byz);
+    const shi_v sxx = shi_madd(axx, bxx, shi_add(xy, xz)), syy = shi_madd(ayy, byy, shi_add(xy, yz));
+    const shi_v szz = shi_madd(minus_azz, minus_bzz, shi_add(xz, yz)), trace = shi_add(shi_add(sxx, syy), szz);
+    const shi_v sxy = shi_madd(axz, byz, shi_madd(ayz, bxz, shi_madd(axy, minus_bzz, shi_mul(bxy, minus_azz))));
+    const shi_v sxz = shi_sub(shi_madd(axy, byz, shi_mul(ayz, bxy)), shi_madd(axz, byy, shi_mul(bxz, ayy)));
+    const shi_v syz = shi_sub(shi_madd(axy, bxz, shi_mul(axz, bxy)), shi_madd(ayz, bxx, shi_mul(byz, axx)));
+    const shi_v isotropic = shi_madd(shi_splat(-0.4f), dot, shi_mul(shi_splat(-10.0f / 7.0f), trace));
+    const shi_v diagonal[2] = { shi_madd(shi_splat(1.2f), x, shi_madd(shi_splat(30.0f / 7.0f), sxx, isotropic)),
+                                shi_madd(shi_splat(1.2f), y, shi_madd(shi_splat(30.0f / 7.0f), syy, isotropic)) };
+    const shi_v f1 = shi_splat(0.6f), f2 = shi_splat(15.0f / 7.0f);
+    const shi_v second[5] = { diagonal[0],
+                              shi_madd(f1, shi_madd(a[SH_X], b[SH_Y], shi_mul(a[SH_Y], b[SH_X])), shi_mul(f2, sxy)),
+                              shi_madd(f1, shi_madd(a[SH_X], b[SH_Z], shi_mul(a[SH_Z], b[SH_X])), shi_mul(f2, sxz)),
+                              diagonal[1],
+                              shi_madd(f1, shi_madd(a[SH_Y], b[SH_Z], shi_mul(a[SH_Z], b[SH_Y])), shi_mul(f2, syz)) };
+    out[SH_R0] = shi_madd(shi_splat(7.5f), trace, out[SH_R0]);
+    for (int i = 0; i < 5; i++)
+        out[SH_XX + i] = shi_madd(a[SH_R0], b[SH_XX + i], shi_madd(b[SH_R0], a[SH_XX + i], second[i]));
+}
+
+/* SHI_LANES pairs whose planes are `stride` floats apart. */
+SHI_INLINE void shi_product_block(int order, const float *a, const float *b, float *out, size_t stride) {
+    shi_v va[SH_COUNT(SH_L2)], vb[SH_COUNT(SH_L2)], product[SH_COUNT(SH_L2)];
+    for (int i = 0; i < SH_COUNT(order); i++) {
+        va[i] = shi_load(a + (size_t)i * stride);
+        vb[i] = shi_load(b + (size_t)i * stride);
+    }
+    shi_product_vectors(order, va, vb, product);
+    for (int i = 0; i < SH_COUNT(order); i++)
+        shi_store(out + (size_t)i * stride, product[i]);
+}
+
+SHI_INLINE void shi_product_planes(int order, const float *a, const float *b, float *out, size_t count) {
+    size_t p = 0;
+    for (; p + SHI_LANES <= count; p += SHI_LANES)
+        shi_product_block(order, a + p, b + p, out + p, count);
+    if (p == count)
+        return;
+    float padded[2][SH_COUNT(SH_L2) * SHI_LANES] = { { 0 } };
+    for (int i = 0; i < SH_COUNT(order); i++) {
+        memcpy(padded[0] + i * SHI_LANES, a + (size_t)i * count + p, (count - p) * sizeof(float));
+        memcpy(padded[1] + i * SHI_LANES, b + (size_t)i * count + p, (count - p) * sizeof(float));
+    }
+    shi_product_block(order, padded[0], padded[1], padded[0], SHI_LANES);
+    for (int i = 0; i < SH_COUNT(order); i++)
+        memcpy(out + (size_t)i * count + p, padded[0] + i * SHI_LANES, (count - p) * sizeof(float));
+}
+
+SHI_FUNCTION void sh_product_batch(int order, const float *a, const float *b, float *out, size_t count) {
+    switch (order) {
+    case SH_L0: shi_product_planes(SH_L0, a, b, out, count); break;
+    case SH_L1: shi_product_planes(SH_L1, a, b, out, count); break;
+    default: shi_product_planes(SH_L2, a, b, out, count); break;
+    }
 }
 
 /* ---- Images ---------------------------------------------------------------------------------------------------------------------
