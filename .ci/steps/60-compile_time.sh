@@ -1,0 +1,6 @@
+# The table of what including sh.h costs a translation unit; printed, not judged.
+need_gcc
+need_clang
+
+check "compile time" .ci/compile_time.sh
+sed -n '/^|/p' "$work/log/compile_time.log"

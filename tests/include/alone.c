@@ -1,0 +1,5 @@
+/* sh.h needs nothing before it. */
+#include "sh.h"
+
+#define PROBE probe_alone
+#include "probe.h"
