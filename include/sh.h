@@ -202,6 +202,61 @@ SHI_FUNCTION void sh_rotate_batch(int order, const float *c, const float m[9], f
 SHI_FUNCTION void sh_product_batch(int order, const float *a, const float *b, float *out, size_t count);
 #endif
 
+/* ---- Lights: each adds to `channels` planar sets; a value is an array of one float per channel ------------------------------------
+ * Positions are relative to the receiver. Nothing is clipped by a surface's horizon, nothing casts a shadow. What is normalised is the
+ * continuous light, never its reconstruction. Errors <= 1e-6 of the light's R0, unless stated. Any magnitude up to 1e18; lights of no
+ * size add nothing, unless their unit says how much light arrives. */
+
+typedef enum sh_unit {
+    SH_RADIANCE,  /* the emitter's radiance: what a camera sees, at whatever distance and size; for a lobe, at its peak */
+    SH_IRRADIANCE /* irradiance / pi of a white surface that faces the light's centre: it is the same at whatever size */
+} sh_unit;
+
+SHI_INLINE void sh_add_ambient(int order, int channels, const float *radiance, float *c);
+
+/* Light from one direction; irradiance / pi at normal incidence. 4 times sh_add_sample's value. */
+SHI_INLINE void sh_add_directional(int order, int channels, const float dir[3], const float *irradiance, float *c);
+
+/* Radiance `sky` above the plane with unit normal `up`, `ground` below. Irradiance / pi is then (sky + ground)/2 + (sky - ground)/2
+ * n.up, exactly. */
+SHI_INLINE void sh_add_hemisphere(int order, int channels, const float up[3], const float *sky, const float *ground, float *c);
+
+/* A cap (a sun, a cone of sky) about dir of half_angle radians, in [0, pi]. A cap of solid angle S has half-angle
+ * 2 asin(sqrt(S / (4 pi))). Facing irradiance / pi is radiance times sin^2(half_angle), or 1 from pi/2 on. */
+SHI_INLINE void sh_add_cap(int order, int channels, const float dir[3], float half_angle, sh_unit unit, const float *value, float *c);
+
+/* A sphere seen from outside is a cap; from inside it is ambient light. A sphere of radius 0 at the receiver adds no radiance. */
+SHI_INLINE void sh_add_sphere(int order, int channels, const float center[3], float radius, sh_unit unit, const float *value, float *c);
+
+/* A von Mises-Fisher lobe (spherical Gaussian) exp(sharpness (t - 1)), sharpness >= 0. */
+SHI_FUNCTION void sh_add_vmf(int order, int channels, const float dir[3], float sharpness, sh_unit unit, const float *value, float *c);
+
+/* A planar polygon, convex or not, without crossings: `count` vertices x, y, z, in either sense; emits from both faces. Exact, by
+ * edge integrals: band l is a sum over edges of -1 / (l (l + 1)) times the outward derivative of the basis; R0 is the solid angle of
+ * a fan of triangles (Van Oosterom and Strackee, 1983). Seen edge on it adds nothing; a receiver on the polygon itself has a
+ * hemisphere of light on one of its sides; one on an edge, something finite. SH_ERROR_ARGUMENT: NULL, or count < 3. */
+SHI_FUNCTION int sh_add_polygon(int order, int channels, const float *vertices, size_t count, const float *radiance, float *c);
+
+/* A parallelogram from its centre and the vectors from there to the middles of two adjacent sides; as sh_add_polygon. */
+SHI_FUNCTION void sh_add_rectangle(int order, int channels, const float center[3], const float half_u[3], const float half_v[3],
+                                   const float *radiance, float *c);
+
+/* A disk with unit normal, emitting from both faces. The same integrals around the rim, by the trapezoidal rule. Error <= 1e-6 of R0
+ * where the rim is farther away than radius / 30; larger nearer to it. On the disk: a hemisphere of light, towards the normal. */
+SHI_FUNCTION void sh_add_disk(int order, int channels, const float center[3], const float normal[3], float radius, const float *radiance,
+                              float *c);
+
+/* A tube from a to b of diameter `width`, small against its distance: the limit of a rectangle that faces the receiver. Nearer to its
+ * axis than width / 2 it grows no brighter; on the axis it adds nothing. */
+SHI_FUNCTION void sh_add_segment(int order, int channels, const float a[3], const float b[3], float width, const float *radiance,
+                                 float *c);
+
+/* Adds `count` spheres x, y, z, radius, of radiance[i * channels + k], and skips the negligible: those left out change irradiance / pi
+ * (true or reconstructed) by at most `tolerance` together, in any channel at any normal. Returns how many were added. The bound:
+ * a sphere's irradiance / pi is at most L r^2 / d^2, and its L2 reconstruction 17/16 of that. */
+SHI_FUNCTION size_t sh_add_spheres(int order, int channels, const float *spheres, const float *radiance, size_t count, float tolerance,
+                                   float *c);
+
 /* ---- Projection from samples and functions -------------------------------------------------------------------------------------- */
 
 SHI_FUNCTION void sh_accum_clear(int channels, sh_accum *accum);
@@ -796,6 +851,349 @@ SHI_FUNCTION void sh_zonal_ggx(float alpha, float zonal[3]) {
     if (a > 1e-9)
         shi_ggx_integrals((1.0 - aa) / (1.0 + aa), 2.0 * aa / (1.0 + aa), J);
     shi_set3(1.0f, (float)(J[1] / J[0]), (float)(1.5 * J[2] / J[0] - 0.5), zonal);
+}
+
+/* ---- Lights --------------------------------------------------------------------------------------------------------------------- */
+
+/* Adds value[k] * lobe to channel k. Written out, for compilers that do not unroll. */
+SHI_INLINE void shi_add_lobe(int order, int channels, const float *lobe, const float *value, float *c) {
+    for (int k = 0; k < channels; k++, c += SH_COUNT(order)) {
+        const float v = value[k];
+        c[SH_R0] += v * lobe[SH_R0];
+        if (order >= SH_L1) {
+            c[SH_X] += v * lobe[SH_X];
+            c[SH_Y] += v * lobe[SH_Y];
+            c[SH_Z] += v * lobe[SH_Z];
+        }
+        if (order >= SH_L2) {
+            c[SH_XX] += v * lobe[SH_XX];
+            c[SH_XY] += v * lobe[SH_XY];
+            c[SH_XZ] += v * lobe[SH_XZ];
+            c[SH_YY] += v * lobe[SH_YY];
+            c[SH_YZ] += v * lobe[SH_YZ];
+        }
+    }
+}
+
+/* Adds value[k] * the zonal lobe about dir. */
+SHI_INLINE void shi_add_zonal(int order, int channels, const float zonal[3], const float dir[3], const float *value, float *c) {
+    const float x = dir[0], y = dir[1], z = dir[2], k1 = zonal[1], k2 = zonal[2], third = 1.0f / 3.0f;
+    const float lobe[9] = { zonal[0],  k1 * x,        k1 * y, k1 * z, k2 * (x * x - third), k2 * (x * y), k2 * (x * z),
+                            k2 * (y * y - third), k2 * (y * z) };
+    shi_add_lobe(order, channels, lobe, value, c);
+}
+
+SHI_INLINE void sh_add_ambient(int order, int channels, const float *radiance, float *c) {
+    for (int k = 0; k < channels; k++)
+        c[k * SH_COUNT(order)] += radiance[k];
+}
+
+SHI_INLINE void sh_add_directional(int order, int channels, const float dir[3], const float *irradiance, float *c) {
+    const float zonal[3] = { 0.25f, 0.25f, 0.25f };
+    shi_add_zonal(order, channels, zonal, dir, irradiance, c);
+}
+
+SHI_INLINE void sh_add_hemisphere(int order, int channels, const float up[3], const float *sky, const float *ground, float *c) {
+    for (int k = 0; k < channels; k++, c += SH_COUNT(order)) {
+        c[SH_R0] += 0.5f * sky[k] + 0.5f * ground[k];
+        if (order >= SH_L1)
+            for (int i = 0; i < 3; i++)
+                c[SH_X + i] += (0.25f * sky[k] - 0.25f * ground[k]) * up[i];
+    }
+}
+
+/* The lobe of a cap with h = 1 - cos(half-angle), which is exact where the cosine has lost the angle. */
+SHI_INLINE void shi_cap_lobe(float h, sh_unit unit, float zonal[3]) {
+    if (unit == SH_IRRADIANCE && h < 1.0f)
+        shi_set3(0.5f / (2.0f - h), 0.25f, 0.25f * (1.0f - h), zonal);
+    else
+        shi_set3(0.5f * h, 0.25f * h * (2.0f - h), 0.25f * (1.0f - h) * h * (2.0f - h), zonal);
+}
+
+SHI_INLINE void sh_add_cap(int order, int channels, const float dir[3], float half_angle, sh_unit unit, const float *value, float *c) {
+    const float s = sinf(0.5f * shi_clamp(half_angle, 0.0f, (float)SHI_PI));
+    float zonal[3];
+    shi_cap_lobe(2.0f * s * s, unit, zonal);
+    shi_add_zonal(order, channels, zonal, dir, value, c);
+}
+
+SHI_INLINE void sh_add_sphere(int order, int channels, const float center[3], float radius, sh_unit unit, const float *value, float *c) {
+    const double x = (double)center[0], y = (double)center[1], z = (double)center[2], r = (double)radius;
+    const double square = x * x + y * y + z * z;
+    float zonal[3], dir[3] = { 0.0f, 0.0f, 1.0f };
+    if (square <= r * r)
+        shi_set3(r > 0.0 || unit == SH_IRRADIANCE ? 1.0f : 0.0f, 0.0f, 0.0f, zonal);
+    else {
+        const double inverse = 1.0 / sqrt(square), sine = r * inverse, ss = sine * sine;
+        shi_set3((float)(x * inverse), (float)(y * inverse), (float)(z * inverse), dir);
+        shi_cap_lobe((float)(ss / (1.0 + sqrt(1.0 - ss))), unit, zonal);
+    }
+    shi_add_zonal(order, channels, zonal, dir, value, c);
+}
+
+/* For a lobe of mean 1, the peak is 2K / (1 - exp(-2K)), facing irradiance / pi 4 (K - 1 + exp(-K)) / (K (1 - exp(-2K))); below
+ * K = 1/1000, their series. */
+SHI_FUNCTION void sh_add_vmf(int order, int channels, const float dir[3], float sharpness, sh_unit unit, const float *value, float *c) {
+    const double k = (double)sharpness, rest = -expm1(-2.0 * k);
+    const double peak = k < 1e-3 ? 1.0 + k + k * k / 3.0 : 2.0 * k / rest;
+    const double facing = k < 1e-3 ? 1.0 + 2.0 / 3.0 * k + k * k / 12.0 : 4.0 * (k + expm1(-k)) / (k * rest);
+    const double mean = 1.0 / (unit == SH_RADIANCE ? peak : facing);
+    float zonal[3];
+    sh_zonal_vmf(sharpness, zonal);
+    shi_set3((float)mean, (float)(mean * (double)zonal[1]), (float)(mean * (double)zonal[2]), zonal);
+    shi_add_zonal(order, channels, zonal, dir, value, c);
+}
+
+SHI_INLINE double shi_dot(const double a[3], const double b[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+SHI_INLINE void shi_cross(const double a[3], const double b[3], double out[3]) {
+    const double x = a[1] * b[2] - a[2] * b[1], y = a[2] * b[0] - a[0] * b[2], z = a[0] * b[1] - a[1] * b[0];
+    out[0] = x;
+    out[1] = y;
+    out[2] = z;
+}
+
+/* out = a + t b */
+SHI_INLINE void shi_along(const double a[3], double t, const double b[3], double out[3]) {
+    for (int i = 0; i < 3; i++)
+        out[i] = a[i] + t * b[i];
+}
+
+SHI_INLINE void shi_widen(const float a[3], double out[3]) {
+    for (int i = 0; i < 3; i++)
+        out[i] = (double)a[i];
+}
+
+/* Adds radiance times a light's moments of radiance 1, given as integrals over the sphere. */
+SHI_FUNCTION void shi_add_integral(int order, int channels, const double integral[9], const float *radiance, float *c) {
+    float lobe[9];
+    for (int i = 0; i < 9; i++)
+        lobe[i] = (float)(integral[i] / (4.0 * SHI_PI));
+    shi_add_lobe(order, channels, lobe, radiance, c);
+}
+
+/* integral = solid_angle * basis(p / |p|): a light too small to have a shape. */
+SHI_FUNCTION void shi_point_integral(const double p[3], double solid_angle, double integral[9]) {
+    const double square = shi_dot(p, p), inverse = square > 0.0 ? 1.0 / sqrt(square) : 0.0;
+    const double x = p[0] * inverse, y = p[1] * inverse, z = p[2] * inverse, third = square > 0.0 ? 1.0 / 3.0 : 0.0;
+    const double basis[9] = { 1.0, x, y, z, x * x - third, x * y, x * z, y * y - third, y * z };
+    for (int i = 0; i < 9; i++)
+        integral[i] = solid_angle * basis[i];
+}
+
+/* The part of R1 and R2 of a piece of a light's outline: f = integral of the inward normal along it, and of sym(inward u'). */
+SHI_INLINE void shi_outline_add(const double f[3], const double n[3], const double g[3], double integral[9]) {
+    for (int i = 0; i < 3; i++)
+        integral[SH_X + i] += f[i] / 2.0;
+    integral[SH_XX] += n[0] * g[0] / 3.0;
+    integral[SH_XY] += (n[0] * g[1] + n[1] * g[0]) / 6.0;
+    integral[SH_XZ] += (n[0] * g[2] + n[2] * g[0]) / 6.0;
+    integral[SH_YY] += n[1] * g[1] / 3.0;
+    integral[SH_YZ] += (n[1] * g[2] + n[2] * g[1]) / 6.0;
+}
+
+/* The great arc from a to b: its inward normal n is constant, f = angle n, g = integral of u. From differences of the vertices, so
+ * that a small light far away keeps its digits. */
+SHI_FUNCTION void shi_edge_add(const double a[3], const double b[3], double integral[9]) {
+    double edge[3], n[3], f[3], g[3], chord[3];
+    shi_along(b, -1.0, a, edge);
+    shi_cross(a, edge, n);
+    const double cross = sqrt(shi_dot(n, n)), dot = shi_dot(a, b), la = sqrt(shi_dot(a, a)), lb = sqrt(shi_dot(b, b));
+    if (!(cross > 0.0))
+        return;
+    const double angle = atan2(cross, dot), half_tangent = cross / (la * lb + dot);
+    for (int i = 0; i < 3; i++) {
+        n[i] /= cross;
+        f[i] = angle * n[i];
+        g[i] = (a[i] / la + b[i] / lb) * half_tangent;
+        chord[i] = a[i] / la - b[i] / lb;
+    }
+    if (dot < 0.0)
+        shi_cross(n, chord, g);
+    shi_outline_add(f, n, g, integral);
+}
+
+/* Signed solid angle of a triangle. */
+SHI_FUNCTION double shi_triangle_angle(const double a[3], const double b[3], const double c[3]) {
+    double ab[3], ac[3], normal[3];
+    shi_along(b, -1.0, a, ab);
+    shi_along(c, -1.0, a, ac);
+    shi_cross(ab, ac, normal);
+    const double la = sqrt(shi_dot(a, a)), lb = sqrt(shi_dot(b, b)), lc = sqrt(shi_dot(c, c));
+    const double rest = la * lb * lc + shi_dot(a, b) * lc + shi_dot(b, c) * la + shi_dot(c, a) * lb;
+    return 2.0 * atan2(shi_dot(a, normal), rest);
+}
+
+SHI_FUNCTION void shi_polygon_integral(const float *vertices, size_t count, double integral[9]) {
+    double first[3], last[3], middle[3] = { 0, 0, 0 }, solid_angle = 0.0, extent = 0.0;
+    memset(integral, 0, 9 * sizeof *integral);
+    shi_widen(vertices, first);
+    shi_widen(vertices + 3 * (count - 1), last);
+    for (size_t i = 0; i < count; i++) {
+        double p[3], from_first[3];
+        shi_widen(vertices + 3 * i, p);
+        shi_edge_add(last, p, integral);
+        if (i >= 2)
+            solid_angle += shi_triangle_angle(first, last, p);
+        shi_along(p, -1.0, first, from_first);
+        extent = fmax(extent, shi_dot(from_first, from_first));
+        shi_along(middle, 1.0 / (double)count, p, middle);
+        memcpy(last, p, sizeof last);
+    }
+    /* The sums over edges cancel to the square of the light's angular size; at 1e-8, half of a double's digits are left. */
+    if (extent < 1e-16 * shi_dot(first, first))
+        shi_point_integral(middle, solid_angle, integral);
+    integral[SH_R0] = solid_angle;
+    if (solid_angle < 0.0)
+        for (int i = 0; i < 9; i++)
+            integral[i] = -integral[i];
+}
+
+SHI_FUNCTION int sh_add_polygon(int order, int channels, const float *vertices, size_t count, const float *radiance, float *c) {
+    double integral[9];
+    if (!shi_order_ok(order) || channels < 1 || !vertices || count < 3 || !radiance || !c)
+        return SH_ERROR_ARGUMENT;
+    shi_polygon_integral(vertices, count, integral);
+    shi_add_integral(order, channels, integral, radiance, c);
+    return SH_OK;
+}
+
+SHI_FUNCTION void sh_add_rectangle(int order, int channels, const float center[3], const float half_u[3], const float half_v[3],
+                                   const float *radiance, float *c) {
+    float corner[4][3];
+    for (int i = 0; i < 3; i++) {
+        corner[0][i] = center[i] - half_u[i] - half_v[i];
+        corner[1][i] = center[i] + half_u[i] - half_v[i];
+        corner[2][i] = center[i] + half_u[i] + half_v[i];
+        corner[3][i] = center[i] - half_u[i] + half_v[i];
+    }
+    sh_add_polygon(order, channels, corner[0], 4, radiance, c);
+}
+
+/* Two unit vectors that make a right-handed frame with unit vector n. Duff et al., "Building an Orthonormal Basis, Revisited", 2017. */
+SHI_FUNCTION void shi_frame(const double n[3], double u[3], double v[3]) {
+    const double sign = n[2] < 0.0 ? -1.0 : 1.0, a = -1.0 / (sign + n[2]), b = n[0] * n[1] * a;
+    u[0] = 1.0 + sign * n[0] * n[0] * a;
+    u[1] = sign * b;
+    u[2] = -sign * n[0];
+    v[0] = b;
+    v[1] = sign + n[1] * n[1] * a;
+    v[2] = -n[1];
+}
+
+/* Points on the rim for an error of 1e-8. The integrand's nearest pole is at azimuth + i y, where |p|^2 = 0:
+ * cosh y - 1 = gap^2 / (2 radius * distance from the axis). */
+SHI_FUNCTION int shi_rim_points(const double center[3], const double axis[3], double radius) {
+    const double height = shi_dot(center, axis), off = sqrt(fmax(0.0, shi_dot(center, center) - height * height));
+    const double gap = (off - radius) * (off - radius) + height * height, span = 2.0 * radius * off;
+    const double t = gap < 100.0 * span ? gap / span : 100.0, y = log1p(t + sqrt(t * (t + 2.0)));
+    return y > 0.02 ? 16 + (int)(20.0 / y) : 1016;
+}
+
+/* Around the rim p of a disk: f = integral of u x du, R2 from (u x du) u', and the solid angle from axis.(u x du) / (1 + axis.u), whose
+ * denominator is at least 1 as the axis points away from the receiver. */
+SHI_FUNCTION void shi_disk_integral(const double center[3], const double axis[3], double radius, double integral[9]) {
+    const int points = shi_rim_points(center, axis, radius);
+    const double step = 2.0 * SHI_PI / points, cos_step = cos(step), sin_step = sin(step);
+    double u[3], v[3], cosine = 1.0, sine = 0.0;
+    shi_frame(axis, u, v);
+    memset(integral, 0, 9 * sizeof *integral);
+    for (int i = 0; i < points; i++) {
+        double p[3], slope[3], f[3], g[3];
+        for (int k = 0; k < 3; k++) {
+            p[k] = center[k] + radius * (cosine * u[k] + sine * v[k]);
+            slope[k] = radius * step * (cosine * v[k] - sine * u[k]);
+        }
+        shi_cross(p, slope, f);
+        const double square = shi_dot(p, p), inverse = square > 0.0 ? 1.0 / square : 0.0, length = sqrt(inverse);
+        for (int k = 0; k < 3; k++) {
+            f[k] *= inverse;
+            g[k] = p[k] * length;
+        }
+        integral[SH_R0] += shi_dot(axis, f) / (1.0 + shi_dot(axis, g));
+        shi_outline_add(f, f, g, integral);
+        const double next = cosine * cos_step - sine * sin_step;
+        sine = sine * cos_step + cosine * sin_step;
+        cosine = next;
+    }
+}
+
+SHI_FUNCTION void sh_add_disk(int order, int channels, const float center[3], const float normal[3], float radius, const float *radiance,
+                              float *c) {
+    double p[3], axis[3], integral[9];
+    const double r = (double)radius;
+    if (!(r > 0.0))
+        return;
+    shi_widen(center, p);
+    shi_widen(normal, axis);
+    if (shi_dot(p, axis) < 0.0)
+        for (int i = 0; i < 3; i++)
+            axis[i] = -axis[i];
+    const double square = shi_dot(p, p);
+    if (r * r < 1e-16 * square)
+        shi_point_integral(p, SHI_PI * r * r / square * shi_dot(p, axis) / sqrt(square), integral);
+    else
+        shi_disk_integral(p, axis, r, integral);
+    shi_add_integral(order, channels, integral, radiance, c);
+}
+
+/* At angle p from the foot of the perpendicular, the tube is width cos(p) / h wide: moments are integrals of products of cos and sin. */
+SHI_FUNCTION void sh_add_segment(int order, int channels, const float a[3], const float b[3], float width, const float *radiance,
+                                 float *c) {
+    double from[3], to[3], t[3], e[3], integral[9];
+    shi_widen(a, from);
+    shi_widen(b, to);
+    shi_along(to, -1.0, from, t);
+    const double length = sqrt(shi_dot(t, t));
+    if (!(length > 0.0))
+        return;
+    for (int i = 0; i < 3; i++)
+        t[i] /= length;
+    const double a0 = shi_dot(from, t), b0 = shi_dot(to, t);
+    if (fabs(a0) < fabs(b0)) /* the nearer end has the more accurate foot of the perpendicular */
+        shi_along(from, -a0, t, e);
+    else
+        shi_along(to, -b0, t, e);
+    const double h = sqrt(shi_dot(e, e)), la = sqrt(a0 * a0 + h * h), lb = sqrt(b0 * b0 + h * h);
+    if (!(h > 0.0 && width > 0.0f))
+        return;
+    for (int i = 0; i < 3; i++)
+        e[i] /= h;
+    const double s0 = a0 / la, s1 = b0 / lb, c0 = h / la, c1 = h / lb;
+    const double angle = atan2(s1, c1) - atan2(s0, c0), w = (double)width / fmax(h, 0.5 * (double)width);
+    const double cubes = (s1 * s1 * s1 - s0 * s0 * s0) / 3.0, one = s1 - s0;
+    const double ec = (angle + s1 * c1 - s0 * c0) / 2.0, tc = (s1 * s1 - s0 * s0) / 2.0;      /* of cos^2, of sin cos */
+    const double ee = one - cubes, et = (c0 * c0 * c0 - c1 * c1 * c1) / 3.0, tt = cubes;      /* of cos^3, cos^2 sin, cos sin^2 */
+    integral[SH_R0] = w * one;
+    for (int i = 0, at = SH_XX; i < 3; i++) {
+        integral[SH_X + i] = w * (ec * e[i] + tc * t[i]);
+        for (int j = i; j < 3 && at <= SH_YZ; j++, at++)
+            integral[at] = w * (ee * e[i] * e[j] + et * (e[i] * t[j] + t[i] * e[j]) + tt * t[i] * t[j] - (i == j ? one / 3.0 : 0.0));
+    }
+    shi_add_integral(order, channels, integral, radiance, c);
+}
+
+SHI_FUNCTION size_t sh_add_spheres(int order, int channels, const float *spheres, const float *radiance, size_t count, float tolerance,
+                                   float *c) {
+    double skipped = 0.0;
+    size_t added = 0;
+    for (size_t i = 0; i < count; i++, spheres += 4, radiance += channels) {
+        double p[3], most = 0.0;
+        shi_widen(spheres, p);
+        for (int k = 0; k < channels; k++)
+            most = fmax(most, fabs((double)radiance[k]));
+        const double square = shi_dot(p, p), rr = (double)spheres[3] * (double)spheres[3];
+        const double bound = rr < square ? 17.0 / 16.0 * most * rr / square : most;
+        if (skipped + bound <= (double)tolerance) {
+            skipped += bound;
+            continue;
+        }
+        sh_add_sphere(order, channels, spheres, spheres[3], SH_RADIANCE, radiance, c);
+        added++;
+    }
+    return added;
 }
 
 #ifndef SH_NO_BATCH
