@@ -257,6 +257,59 @@ SHI_FUNCTION void sh_add_segment(int order, int channels, const float a[3], cons
 SHI_FUNCTION size_t sh_add_spheres(int order, int channels, const float *spheres, const float *radiance, size_t count, float tolerance,
                                    float *c);
 
+/* ---- Conversion and storage: one channel, unless they say otherwise ----------------------------------------------------------------
+ * Sets of other engines, numbered l (l + 1) + m: 1; y, z, x; xy, yz, 3z^2 - 1, xz, x^2 - y^2, in their own axes (sh_swap_axes):
+ *     three.js SphericalHarmonics3, Probulator, sphericart          orthonormal; three.js is interleaved, its getIrradianceAt is pi times
+ *                                                                   sh_irradiance
+ *     DirectXMath, Unreal, google/spherical-harmonics, Blender      orthonormal with SH_CONDON_SHORTLEY; an "order" of 3 is SH_L2
+ *     Unity SphericalHarmonicsL2, Filament, Babylon preScaled       unity; Unity keeps the channels planar, the others interleaved
+ *     Babylon SphericalPolynomial                                   babylon
+ * A round trip is exact to 4 ulp of the largest coefficient of a band. */
+
+enum { SH_CONDON_SHORTLEY = 1 }; /* phase: coefficients of odd m change sign; 0: all positive */
+
+/* f = integral of L Y dOmega, of orthonormal real Y. out may be c. */
+SHI_FUNCTION void sh_to_orthonormal(int order, const float *c, int phase, float *out);
+SHI_FUNCTION void sh_from_orthonormal(int order, const float *f, int phase, float *out);
+
+/* The factors of the polynomial that is irradiance / pi: E/pi(n) = u0 + u1 y + u2 z + u3 x + u4 xy + ... + u6 (3z^2 - 1) + ... */
+SHI_FUNCTION void sh_to_unity(int order, const float *c, float *out);
+SHI_FUNCTION void sh_from_unity(int order, const float *u, float *out);
+
+/* An L2 set as the factors of x, y, z, xx, yy, zz, yz, zx, xy of irradiance / pi, the order of SphericalPolynomial's members. */
+SHI_FUNCTION void sh_to_babylon(const float *c, float out[9]);
+SHI_FUNCTION void sh_from_babylon(const float p[9], float *out);
+
+/* Planar sets to coefficients of all channels side by side (a vec3 or Vector3 per coefficient), and back. out must not be c. */
+SHI_FUNCTION void sh_interleave(int order, int channels, const float *c, float *out);
+SHI_FUNCTION void sh_deinterleave(int order, int channels, const float *c, float *out);
+
+/* Three L2 sets as seven float4, s[0] to s[6], for irradiance / pi at n by 7 dot products or multiply-adds of a shader. GLSL:
+ *     vec4 p = vec4(n, 1.0), q = n.xyzz * n.yzzx;
+ *     vec3 e = vec3(dot(s[0], p), dot(s[1], p), dot(s[2], p)) + vec3(dot(s[3], q), dot(s[4], q), dot(s[5], q))
+ *            + s[6].rgb * (n.x * n.x - n.y * n.y);
+ * HLSL: the same with float4 p = float4(n, 1.0), q = n.xyzz * n.yzzx; float3 e = float3(...) + float3(...) + ... */
+SHI_FUNCTION void sh_pack_shader(const float *c, float out[28]);
+
+/* `channels` planar sets as halves with one exponent: out has channels * SH_COUNT(order) halves, each coefficient * 2^-e, and e (two's
+ * complement) as its last word. The largest lies in [2^14, 2^15): nothing overflows up to 1e38, and only what is 2^-29 of it becomes
+ * subnormal. A set that non-negative light can have stays one: its R0 is rounded up as far as that needs, 4 steps of a half at most.
+ * Error of irradiance / pi <= 0.0025 R0; 0.001 R0 unless R0 was rounded up. NaN and infinity are not handled. */
+SHI_FUNCTION void sh_pack_half(int order, int channels, const float *c, uint16_t *out);
+SHI_FUNCTION void sh_unpack_half(int order, int channels, const uint16_t *in, float *out);
+
+/* Sets as their R0, kept in `r0[channel]` for you to store as you like, and ratios to R0 in the ranges that light can have: x, y, z in
+ * [-1, 1], xy, xz, yz in [-1/2, 1/2], xx and yy in [-1/3, 2/3]. 8 bits: SH_COUNT(order) - 1 bytes a channel, in the order of the
+ * coefficients. 10 bits: three to a word, red first (RGB10A2): 0, 1 or 3 words a channel; alpha is 0. 0 is kept exactly; with
+ * n = 2^(bits - 1) - 1, a unorm t decodes to ((2n + 1) t - n - 1) / n, half of that, or t - 1/3.
+ * A set that non-negative light can have stays one, whatever precision R0 is stored in: its ratios are shrunk, as far as that needs.
+ * Error of irradiance / pi <= 0.024 R0 in 8 bits, 0.006 R0 in 10; where ratios had to be shrunk (nearly a single direction) <= 0.09 R0
+ * and 0.024 R0. Ratios of sets that light cannot have are clamped; R0 <= 0 decodes to R0 alone. */
+SHI_FUNCTION void sh_pack_unorm8(int order, int channels, const float *c, float *r0, uint8_t *ratio);
+SHI_FUNCTION void sh_unpack_unorm8(int order, int channels, const float *r0, const uint8_t *ratio, float *out);
+SHI_FUNCTION void sh_pack_unorm10(int order, int channels, const float *c, float *r0, uint32_t *ratio);
+SHI_FUNCTION void sh_unpack_unorm10(int order, int channels, const float *r0, const uint32_t *ratio, float *out);
+
 /* ---- Projection from samples and functions -------------------------------------------------------------------------------------- */
 
 SHI_FUNCTION void sh_accum_clear(int channels, sh_accum *accum);
@@ -1194,6 +1247,298 @@ SHI_FUNCTION size_t sh_add_spheres(int order, int channels, const float *spheres
         added++;
     }
     return added;
+}
+
+/* ---- Conversion and storage ----------------------------------------------------------------------------------------------------- */
+
+/* A set in the order 1; y, z, x; xy, yz, zz, xz, xx - yy: factors of R0, of R1, of the three products, of zz and of xx - yy; what odd m
+ * is multiplied by as well. */
+typedef struct shi_convention {
+    double f0, f1, f2, f20, f22, odd;
+} shi_convention;
+
+SHI_FUNCTION shi_convention shi_orthonormal(int phase) {
+    const double root_pi = 1.77245385090551602730; /* sqrt(pi) */
+    const shi_convention k = { 2.0 * root_pi,             sqrt(12.0) * root_pi, 2.0 * sqrt(15.0) * root_pi, 3.0 * sqrt(5.0) * root_pi,
+                               sqrt(15.0) * root_pi, phase == SH_CONDON_SHORTLEY ? -1.0 : 1.0 };
+    return k;
+}
+
+SHI_FUNCTION shi_convention shi_unity(void) {
+    const shi_convention k = { 1.0, 2.0, 15.0 / 4.0, 15.0 / 16.0, 15.0 / 16.0, 1.0 };
+    return k;
+}
+
+SHI_FUNCTION void shi_to_convention(int order, const float *c, const shi_convention *k, float *out) {
+    double wide[9] = { 0 };
+    for (int i = 0; i < SH_COUNT(order); i++)
+        wide[i] = (double)c[i];
+    out[0] = (float)(k->f0 * wide[SH_R0]);
+    if (order >= SH_L1) {
+        out[1] = (float)(k->odd * k->f1 * wide[SH_Y]);
+        out[2] = (float)(k->f1 * wide[SH_Z]);
+        out[3] = (float)(k->odd * k->f1 * wide[SH_X]);
+    }
+    if (order >= SH_L2) {
+        out[4] = (float)(k->f2 * wide[SH_XY]);
+        out[5] = (float)(k->odd * k->f2 * wide[SH_YZ]);
+        out[6] = (float)(k->f20 * -(wide[SH_XX] + wide[SH_YY]));
+        out[7] = (float)(k->odd * k->f2 * wide[SH_XZ]);
+        out[8] = (float)(k->f22 * (wide[SH_XX] - wide[SH_YY]));
+    }
+}
+
+SHI_FUNCTION void shi_from_convention(int order, const float *f, const shi_convention *k, float *out) {
+    double wide[9] = { 0 };
+    for (int i = 0; i < SH_COUNT(order); i++)
+        wide[i] = (double)f[i];
+    out[SH_R0] = (float)(wide[0] / k->f0);
+    if (order >= SH_L1) {
+        out[SH_X] = (float)(k->odd * wide[3] / k->f1);
+        out[SH_Y] = (float)(k->odd * wide[1] / k->f1);
+        out[SH_Z] = (float)(wide[2] / k->f1);
+    }
+    if (order >= SH_L2) {
+        const double zz = wide[6] / k->f20, difference = wide[8] / k->f22;
+        out[SH_XX] = (float)((difference - zz) / 2.0);
+        out[SH_XY] = (float)(wide[4] / k->f2);
+        out[SH_XZ] = (float)(k->odd * wide[7] / k->f2);
+        out[SH_YY] = (float)(-(difference + zz) / 2.0);
+        out[SH_YZ] = (float)(k->odd * wide[5] / k->f2);
+    }
+}
+
+SHI_FUNCTION void sh_to_orthonormal(int order, const float *c, int phase, float *out) {
+    const shi_convention k = shi_orthonormal(phase);
+    shi_to_convention(order, c, &k, out);
+}
+
+SHI_FUNCTION void sh_from_orthonormal(int order, const float *f, int phase, float *out) {
+    const shi_convention k = shi_orthonormal(phase);
+    shi_from_convention(order, f, &k, out);
+}
+
+SHI_FUNCTION void sh_to_unity(int order, const float *c, float *out) {
+    const shi_convention k = shi_unity();
+    shi_to_convention(order, c, &k, out);
+}
+
+SHI_FUNCTION void sh_from_unity(int order, const float *u, float *out) {
+    const shi_convention k = shi_unity();
+    shi_from_convention(order, u, &k, out);
+}
+
+/* R0 (x^2 + y^2 + z^2) + 2 R1.n + 15/8 n'R2 n */
+SHI_FUNCTION void sh_to_babylon(const float *c, float out[9]) {
+    const double r0 = (double)c[SH_R0], xx = (double)c[SH_XX], yy = (double)c[SH_YY], squares = 15.0 / 8.0;
+    const float yz = 3.75f * c[SH_YZ], zx = 3.75f * c[SH_XZ], xy = 3.75f * c[SH_XY];
+    shi_set3(2.0f * c[SH_X], 2.0f * c[SH_Y], 2.0f * c[SH_Z], out);
+    shi_set3((float)(r0 + squares * xx), (float)(r0 + squares * yy), (float)(r0 - squares * (xx + yy)), out + 3);
+    shi_set3(yz, zx, xy, out + 6);
+}
+
+SHI_FUNCTION void sh_from_babylon(const float p[9], float *out) {
+    const double xx = (double)p[3], yy = (double)p[4], zz = (double)p[5], r0 = (xx + yy + zz) / 3.0, squares = 8.0 / 15.0;
+    const float yz = p[6] / 3.75f, zx = p[7] / 3.75f, xy = p[8] / 3.75f;
+    shi_set3(0.5f * p[0], 0.5f * p[1], 0.5f * p[2], out + SH_X);
+    out[SH_R0] = (float)r0;
+    out[SH_XX] = (float)(squares * (xx - r0));
+    out[SH_XY] = xy;
+    out[SH_XZ] = zx;
+    out[SH_YY] = (float)(squares * (yy - r0));
+    out[SH_YZ] = yz;
+}
+
+SHI_FUNCTION void sh_interleave(int order, int channels, const float *c, float *out) {
+    for (int k = 0; k < channels; k++)
+        for (int i = 0; i < SH_COUNT(order); i++)
+            out[i * channels + k] = c[k * SH_COUNT(order) + i];
+}
+
+SHI_FUNCTION void sh_deinterleave(int order, int channels, const float *c, float *out) {
+    for (int k = 0; k < channels; k++)
+        for (int i = 0; i < SH_COUNT(order); i++)
+            out[k * SH_COUNT(order) + i] = c[i * channels + k];
+}
+
+SHI_FUNCTION void sh_pack_shader(const float *c, float out[28]) {
+    for (int k = 0; k < 3; k++, c += SH_COUNT(SH_L2)) {
+        const float *a = c, zz = -0.9375f * (a[SH_XX] + a[SH_YY]); /* 15/16 */
+        shi_set3(2.0f * a[SH_X], 2.0f * a[SH_Y], 2.0f * a[SH_Z], out + 4 * k);
+        out[4 * k + 3] = a[SH_R0] - zz;
+        shi_set3(3.75f * a[SH_XY], 3.75f * a[SH_YZ], 3.0f * zz, out + 12 + 4 * k);
+        out[15 + 4 * k] = 3.75f * a[SH_XZ];
+        out[24 + k] = 0.9375f * (a[SH_XX] - a[SH_YY]);
+    }
+    out[27] = 1.0f;
+}
+
+/* Whether symmetric m is positive definite: elimination without pivoting, which such a matrix does not need. */
+SHI_FUNCTION int shi_positive_definite(double m[4][4]) {
+    for (int k = 0; k < 4; k++) {
+        if (!(m[k][k] > 0.0))
+            return 0;
+        for (int i = k + 1; i < 4; i++)
+            for (int j = k + 1; j < 4; j++)
+                m[i][j] -= m[i][k] * m[k][j] / m[k][k];
+    }
+    return 1;
+}
+
+/* Whether one channel has moments of a light that is not negative: |R1| <= R0 at L1; at L2, the moment matrix
+ * [[R0, R1'], [R1, R2 + I/3 R0]], with slack * R0 added to its diagonal, is positive definite. */
+SHI_FUNCTION int shi_realizable(int order, const float *c, double slack) {
+    const double r0 = (double)c[SH_R0], more = slack * r0;
+    if (!(r0 > 0.0) || order == SH_L0)
+        return r0 > 0.0;
+    const double x = (double)c[SH_X], y = (double)c[SH_Y], z = (double)c[SH_Z];
+    if (order == SH_L1)
+        return sqrt(x * x + y * y + z * z) <= r0 + more;
+    const double xx = (double)c[SH_XX], yy = (double)c[SH_YY], zz = -(xx + yy), third = r0 / 3.0 + more;
+    const double xy = (double)c[SH_XY], xz = (double)c[SH_XZ], yz = (double)c[SH_YZ];
+    double m[4][4] = { { r0 + more, x, y, z }, { x, xx + third, xy, xz }, { y, xy, yy + third, yz }, { z, xz, yz, zz + third } };
+    return shi_positive_definite(m);
+}
+
+/* What counts as realizable: before packing, to the rounding of floats; after, to that of the elimination. */
+#define SHI_SLACK_BEFORE 2e-6
+#define SHI_SLACK_AFTER 1e-9
+
+/* To the nearest half; |x| < 2^16. Rounds ties of normal halves to even. */
+SHI_FUNCTION uint16_t shi_to_half(float x) {
+    uint32_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    const uint32_t magnitude = bits & 0x7fffffffu, sign = bits >> 31 << 15;
+    if (magnitude < 0x38800000u) /* 2^-14 */
+        return (uint16_t)(sign | (uint32_t)(fabsf(x) * 16777216.0f + 0.5f));
+    return (uint16_t)(sign | (magnitude - 0x38000000u + 0xfffu + (magnitude >> 13 & 1u)) >> 13);
+}
+
+/* Finite halves only. */
+SHI_FUNCTION float shi_from_half(uint16_t h) {
+    const uint32_t magnitude = h & 0x7fffu, bits = (magnitude << 13) + 0x38000000u;
+    float x;
+    memcpy(&x, &bits, sizeof x);
+    if (magnitude < 0x0400u)
+        x = (float)magnitude / 16777216.0f;
+    return h & 0x8000u ? -x : x;
+}
+
+SHI_FUNCTION void shi_halves_to_floats(int count, const uint16_t *in, int exponent, float *out) {
+    for (int i = 0; i < count; i++)
+        out[i] = ldexpf(shi_from_half(in[i]), exponent);
+}
+
+SHI_FUNCTION void sh_pack_half(int order, int channels, const float *c, uint16_t *out) {
+    const int count = SH_COUNT(order);
+    int exponent = 15;
+    float most = 0.0f;
+    for (int i = 0; i < channels * count; i++)
+        most = fabsf(c[i]) > most ? fabsf(c[i]) : most;
+    if (most > 0.0f)
+        frexpf(most, &exponent);
+    exponent -= 15;
+    for (int k = 0; k < channels; k++) {
+        uint16_t *half = out + k * count;
+        float decoded[9];
+        for (int i = 0; i < count; i++)
+            half[i] = shi_to_half(ldexpf(c[k * count + i], -exponent));
+        if (!shi_realizable(order, c + k * count, SHI_SLACK_BEFORE))
+            continue;
+        shi_halves_to_floats(count, half, 0, decoded);
+        for (int step = 0; step < 4 && !shi_realizable(order, decoded, SHI_SLACK_AFTER); step++)
+            decoded[SH_R0] = shi_from_half(++half[SH_R0]);
+    }
+    out[channels * count] = (uint16_t)exponent;
+}
+
+SHI_FUNCTION void sh_unpack_half(int order, int channels, const uint16_t *in, float *out) {
+    const int count = channels * SH_COUNT(order), word = in[count];
+    shi_halves_to_floats(count, in, word < 0x8000 ? word : word - 0x10000, out);
+}
+
+/* Ratios are coded as zero + scale * ratio, in [0, 2^bits - 1]. */
+typedef struct shi_ratio {
+    double zero, scale, least, most;
+} shi_ratio;
+
+SHI_FUNCTION shi_ratio shi_ratio_code(int i, int bits) {
+    const double top = (double)((1 << bits) - 1), middle = (double)(1 << (bits - 1));
+    const shi_ratio first = { middle, middle - 1.0, -1.0, 1.0 }, product = { middle, 2.0 * (middle - 1.0), -0.5, 0.5 };
+    const shi_ratio square = { top / 3.0, top, -1.0 / 3.0, 2.0 / 3.0 };
+    return i < SH_XX ? first : i == SH_XX || i == SH_YY ? square : product;
+}
+
+SHI_FUNCTION void shi_decode_ratios(int order, const uint16_t *code, int bits, float r0, float *out) {
+    out[SH_R0] = r0;
+    for (int i = SH_X; i < SH_COUNT(order); i++) {
+        const shi_ratio ratio = shi_ratio_code(i, bits);
+        out[i] = r0 > 0.0f ? (float)((double)r0 * ((code[i - 1] - ratio.zero) / ratio.scale)) : 0.0f;
+    }
+}
+
+SHI_FUNCTION void shi_encode_ratios(int order, const float *c, int bits, double shrink, uint16_t *code) {
+    for (int i = SH_X; i < SH_COUNT(order); i++) {
+        const shi_ratio ratio = shi_ratio_code(i, bits);
+        const double t = c[SH_R0] > 0.0f ? shrink * (double)c[i] / (double)c[SH_R0] : 0.0;
+        code[i - 1] = (uint16_t)(ratio.zero + ratio.scale * (!(t > ratio.least) ? ratio.least : t > ratio.most ? ratio.most : t) + 0.5);
+    }
+}
+
+/* Codes of one channel that decode to a realizable set if c is one. */
+SHI_FUNCTION void shi_pack_ratios(int order, const float *c, int bits, uint16_t *code) {
+    float decoded[9];
+    shi_encode_ratios(order, c, bits, 1.0, code);
+    if (!shi_realizable(order, c, SHI_SLACK_BEFORE))
+        return;
+    for (int step = 1; step < 64; step++) {
+        shi_decode_ratios(order, code, bits, 1.0f, decoded);
+        if (shi_realizable(order, decoded, SHI_SLACK_AFTER))
+            return;
+        shi_encode_ratios(order, c, bits, 1.0 - step / (2.0 * (1 << bits)), code);
+    }
+}
+
+SHI_FUNCTION void sh_pack_unorm8(int order, int channels, const float *c, float *r0, uint8_t *ratio) {
+    const int count = SH_COUNT(order) - 1;
+    for (int k = 0; k < channels; k++) {
+        uint16_t code[8];
+        r0[k] = c[k * SH_COUNT(order)];
+        shi_pack_ratios(order, c + k * SH_COUNT(order), 8, code);
+        for (int i = 0; i < count; i++)
+            ratio[k * count + i] = (uint8_t)code[i];
+    }
+}
+
+SHI_FUNCTION void sh_unpack_unorm8(int order, int channels, const float *r0, const uint8_t *ratio, float *out) {
+    const int count = SH_COUNT(order) - 1;
+    for (int k = 0; k < channels; k++) {
+        uint16_t code[8];
+        for (int i = 0; i < count; i++)
+            code[i] = ratio[k * count + i];
+        shi_decode_ratios(order, code, 8, r0[k], out + k * SH_COUNT(order));
+    }
+}
+
+SHI_FUNCTION void sh_pack_unorm10(int order, int channels, const float *c, float *r0, uint32_t *ratio) {
+    const int words = (SH_COUNT(order) + 1) / 3;
+    for (int k = 0; k < channels; k++) {
+        uint16_t code[9] = { 0 };
+        r0[k] = c[k * SH_COUNT(order)];
+        shi_pack_ratios(order, c + k * SH_COUNT(order), 10, code);
+        for (int i = 0; i < words; i++)
+            ratio[k * words + i] = code[3 * i] | (uint32_t)code[3 * i + 1] << 10 | (uint32_t)code[3 * i + 2] << 20;
+    }
+}
+
+SHI_FUNCTION void sh_unpack_unorm10(int order, int channels, const float *r0, const uint32_t *ratio, float *out) {
+    const int words = (SH_COUNT(order) + 1) / 3;
+    for (int k = 0; k < channels; k++) {
+        uint16_t code[9];
+        for (int i = 0; i < 3 * words; i++)
+            code[i] = (uint16_t)(ratio[k * words + i / 3] >> (10 * (i % 3)) & 0x3ffu);
+        shi_decode_ratios(order, code, 10, r0[k], out + k * SH_COUNT(order));
+    }
 }
 
 #ifndef SH_NO_BATCH
