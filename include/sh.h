@@ -293,8 +293,8 @@ SHI_FUNCTION void sh_pack_shader(const float *c, float out[28]);
 
 /* `channels` planar sets as halves with one exponent: out has channels * SH_COUNT(order) halves, each coefficient * 2^-e, and e (two's
  * complement) as its last word. The largest lies in [2^14, 2^15): nothing overflows up to 1e38, and only what is 2^-29 of it becomes
- * subnormal. A set that non-negative light can have stays one: its R0 is rounded up as far as that needs, 4 steps of a half at most.
- * Error of irradiance / pi <= 0.0025 R0; 0.001 R0 unless R0 was rounded up. NaN and infinity are not handled. */
+ * subnormal. A set that non-negative light can have stays one: its R0 is rounded up as far as that needs, 8 steps of a half at most.
+ * Error of irradiance / pi <= 0.003 R0, and <= 0.007 R0 where R0 was rounded up (largest seen: 0.0011, 0.0024). Finite sets only. */
 SHI_FUNCTION void sh_pack_half(int order, int channels, const float *c, uint16_t *out);
 SHI_FUNCTION void sh_unpack_half(int order, int channels, const uint16_t *in, float *out);
 
@@ -303,8 +303,8 @@ SHI_FUNCTION void sh_unpack_half(int order, int channels, const uint16_t *in, fl
  * coefficients. 10 bits: three to a word, red first (RGB10A2): 0, 1 or 3 words a channel; alpha is 0. 0 is kept exactly; with
  * n = 2^(bits - 1) - 1, a unorm t decodes to ((2n + 1) t - n - 1) / n, half of that, or t - 1/3.
  * A set that non-negative light can have stays one, whatever precision R0 is stored in: its ratios are shrunk, as far as that needs.
- * Error of irradiance / pi <= 0.024 R0 in 8 bits, 0.006 R0 in 10; where ratios had to be shrunk (nearly a single direction) <= 0.09 R0
- * and 0.024 R0. Ratios of sets that light cannot have are clamped; R0 <= 0 decodes to R0 alone. */
+ * Error of irradiance / pi <= 0.024 R0 in 8 bits, 0.006 R0 in 10; where ratios had to be shrunk (nearly a single direction) <= 0.12 R0
+ * and 0.03 R0 (largest seen: 0.045, 0.013). Ratios of sets that light cannot have are clamped; R0 <= 0 decodes to R0 alone. */
 SHI_FUNCTION void sh_pack_unorm8(int order, int channels, const float *c, float *r0, uint8_t *ratio);
 SHI_FUNCTION void sh_unpack_unorm8(int order, int channels, const float *r0, const uint8_t *ratio, float *out);
 SHI_FUNCTION void sh_pack_unorm10(int order, int channels, const float *c, float *r0, uint32_t *ratio);
@@ -1446,7 +1446,7 @@ SHI_FUNCTION void sh_pack_half(int order, int channels, const float *c, uint16_t
         if (!shi_realizable(order, c + k * count, SHI_SLACK_BEFORE))
             continue;
         shi_halves_to_floats(count, half, 0, decoded);
-        for (int step = 0; step < 4 && !shi_realizable(order, decoded, SHI_SLACK_AFTER); step++)
+        for (int step = 0; step < 8 && !shi_realizable(order, decoded, SHI_SLACK_AFTER); step++)
             decoded[SH_R0] = shi_from_half(++half[SH_R0]);
     }
     out[channels * count] = (uint16_t)exponent;
