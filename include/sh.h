@@ -261,9 +261,11 @@ SHI_FUNCTION size_t sh_add_spheres(int order, int channels, const float *spheres
  * Sets of other engines, numbered l (l + 1) + m: 1; y, z, x; xy, yz, 3z^2 - 1, xz, x^2 - y^2, in their own axes (sh_swap_axes):
  *     three.js SphericalHarmonics3, Probulator, sphericart          orthonormal; three.js is interleaved, its getIrradianceAt is pi times
  *                                                                   sh_irradiance
- *     DirectXMath, Unreal, google/spherical-harmonics, Blender      orthonormal with SH_CONDON_SHORTLEY; an "order" of 3 is SH_L2
+ *     DirectXMath, Unreal, google/spherical-harmonics, Blender,     orthonormal with SH_CONDON_SHORTLEY; an "order" of 3 is SH_L2
+ *     Babylon SphericalHarmonics
  *     Unity SphericalHarmonicsL2, Filament, Babylon preScaled       unity; Unity keeps the channels planar, the others interleaved
- *     Babylon SphericalPolynomial                                   babylon
+ *     Babylon SphericalPolynomial                                   babylon. What its materials take for an environment was convolved once
+ *                                                                   more: give them the set after sh_convolve by sh_zonal_lambert
  * A round trip is exact to 4 ulp of the largest coefficient of a band. */
 
 enum { SH_CONDON_SHORTLEY = 1 }; /* phase: coefficients of odd m change sign; 0: all positive */
@@ -309,6 +311,22 @@ SHI_FUNCTION void sh_pack_unorm8(int order, int channels, const float *c, float 
 SHI_FUNCTION void sh_unpack_unorm8(int order, int channels, const float *r0, const uint8_t *ratio, float *out);
 SHI_FUNCTION void sh_pack_unorm10(int order, int channels, const float *c, float *r0, uint32_t *ratio);
 SHI_FUNCTION void sh_unpack_unorm10(int order, int channels, const float *r0, const uint32_t *ratio, float *out);
+
+/* ---- Fitting -------------------------------------------------------------------------------------------------------------------- */
+
+enum { SH_WARNING_UNDETERMINED = 1 };
+
+/* Least squares: coefficients whose reconstruction is nearest to `count` measurements at directions x[i], y[i], z[i]; for few or uneven
+ * samples, where sh_project_samples, which trusts their distribution, is biased. value is planar: channel k is value[k * count + i];
+ * any number of channels. weight >= 0, NULL: all equal.
+ * zonal: what was measured. NULL: radiance. sh_zonal_lambert's: irradiance / pi.
+ * regularization lambda >= 0 adds lambda l^2 (l + 1)^2 times the mean square of band l of the radiance to the mean square error: bands
+ * that the samples do not need stay small. 1e-3 to 1e-1 for measured light; 0: none.
+ * SH_OK; SH_WARNING_UNDETERMINED if some combination of coefficients hardly changes what is measured (by less than 1e-6 in mean square
+ * where it is 1): c is then the smallest fit. SH_ERROR_ARGUMENT: NULL, bad order or channels, weights whose sum is not positive and
+ * finite, lambda < 0 or NaN; nothing is written. Samples of light of `order` give it back to 1e-6 where the light is determined. */
+SHI_FUNCTION int sh_fit_samples(int order, int channels, const float *x, const float *y, const float *z, const float *value,
+                                const float *weight, size_t count, const float *zonal, float regularization, float *c);
 
 /* ---- Projection from samples and functions -------------------------------------------------------------------------------------- */
 
@@ -1539,6 +1557,123 @@ SHI_FUNCTION void sh_unpack_unorm10(int order, int channels, const float *r0, co
             code[i] = (uint16_t)(ratio[k * words + i / 3] >> (10 * (i % 3)) & 0x3ffu);
         shi_decode_ratios(order, code, 10, r0[k], out + k * SH_COUNT(order));
     }
+}
+
+/* ---- Fitting --------------------------------------------------------------------------------------------------------------------
+ * The unknowns are coefficients of functions whose mean square over the sphere is 1: orthonormal harmonics times sqrt(4 pi). */
+
+SHI_FUNCTION int shi_band(int i) {
+    return i < 1 ? 0 : i < 4 ? 1 : 2;
+}
+
+/* 1; sqrt3 (y, z, x); sqrt15 (xy, yz), sqrt5/2 (3z^2 - 1), sqrt15 xz, sqrt15/2 (x^2 - y^2), each times the kernel of its band. */
+SHI_FUNCTION void shi_fit_row(const double dir[3], const float *zonal, double row[9]) {
+    const double x = dir[0], y = dir[1], z = dir[2], r3 = sqrt(3.0), r15 = sqrt(15.0);
+    const double value[9] = { 1.0, r3 * y, r3 * z, r3 * x, r15 * x * y, r15 * y * z, sqrt(1.25) * (3.0 * z * z - 1.0), r15 * x * z,
+                              r15 / 2.0 * (x * x - y * y) };
+    for (int i = 0; i < 9; i++)
+        row[i] = value[i] * (zonal ? (double)zonal[shi_band(i)] : 1.0);
+}
+
+/* The lower Cholesky factor of m in place; 0 at a pivot that is not above `least`. */
+SHI_FUNCTION int shi_cholesky(double m[9][9], int size, double least) {
+    for (int k = 0; k < size; k++) {
+        for (int j = 0; j < k; j++)
+            m[k][k] -= m[k][j] * m[k][j];
+        if (!(m[k][k] > least))
+            return 0;
+        m[k][k] = sqrt(m[k][k]);
+        for (int i = k + 1; i < size; i++) {
+            for (int j = 0; j < k; j++)
+                m[i][k] -= m[i][j] * m[k][j];
+            m[i][k] /= m[k][k];
+        }
+    }
+    return 1;
+}
+
+SHI_FUNCTION void shi_cholesky_solve(double m[9][9], int size, double v[9]) {
+    for (int i = 0; i < size; i++) {
+        for (int j = 0; j < i; j++)
+            v[i] -= m[i][j] * v[j];
+        v[i] /= m[i][i];
+    }
+    for (int i = size - 1; i >= 0; i--) {
+        for (int j = i + 1; j < size; j++)
+            v[i] -= m[j][i] * v[j];
+        v[i] /= m[i][i];
+    }
+}
+
+/* What is fitted. */
+typedef struct shi_fit {
+    const float *x, *y, *z, *weight, *zonal;
+    size_t count;
+} shi_fit;
+
+/* The weight of sample i, and its row. */
+SHI_FUNCTION double shi_fit_sample(const shi_fit *fit, size_t i, double row[9]) {
+    const double dir[3] = { (double)fit->x[i], (double)fit->y[i], (double)fit->z[i] };
+    shi_fit_row(dir, fit->zonal, row);
+    return fit->weight ? (double)fit->weight[i] : 1.0;
+}
+
+/* The weighted mean of the rows' outer products, plus lambda l^2 (l + 1)^2 and `ridge` on the diagonal; returns the sum of weights. */
+SHI_FUNCTION double shi_fit_matrix(const shi_fit *fit, double lambda, double ridge, double m[9][9]) {
+    double total = 0.0, row[9];
+    memset(m, 0, 81 * sizeof(double));
+    for (size_t i = 0; i < fit->count; i++) {
+        const double w = shi_fit_sample(fit, i, row);
+        total += w;
+        for (int j = 0; j < 9; j++)
+            for (int k = 0; k <= j; k++)
+                m[j][k] += w * row[j] * row[k];
+    }
+    for (int j = 0; j < 9; j++) {
+        const double l = shi_band(j);
+        for (int k = 0; k <= j; k++)
+            m[j][k] /= total;
+        m[j][j] += lambda * l * l * (l + 1.0) * (l + 1.0) + ridge;
+    }
+    return total;
+}
+
+SHI_FUNCTION void shi_fit_channel(const shi_fit *fit, int order, const float *value, double total, double m[9][9], float *c) {
+    /* From functions of mean square 1 to moments. */
+    const shi_convention k = { 1.0, sqrt(3.0), sqrt(15.0), 1.5 * sqrt(5.0), sqrt(3.75), 1.0 };
+    double right[9] = { 0 }, row[9];
+    float solution[9];
+    for (size_t i = 0; i < fit->count; i++) {
+        const double w = shi_fit_sample(fit, i, row) / total * (double)value[i];
+        for (int j = 0; j < 9; j++)
+            right[j] += w * row[j];
+    }
+    shi_cholesky_solve(m, SH_COUNT(order), right);
+    for (int j = 0; j < 9; j++)
+        solution[j] = (float)right[j];
+    shi_from_convention(order, solution, &k, c);
+}
+
+SHI_FUNCTION int sh_fit_samples(int order, int channels, const float *x, const float *y, const float *z, const float *value,
+                                const float *weight, size_t count, const float *zonal, float regularization, float *c) {
+    const double least = 1e-6, lambda = (double)regularization;
+    const shi_fit fit = { x, y, z, weight, zonal, count };
+    double m[9][9];
+    int status = SH_OK;
+    if (!shi_order_ok(order) || channels < 1 || !x || !y || !z || !value || !c || !(regularization >= 0.0f))
+        return SH_ERROR_ARGUMENT;
+    double total = shi_fit_matrix(&fit, lambda, 0.0, m);
+    if (!(total > 0.0 && total < 1e300))
+        return SH_ERROR_ARGUMENT;
+    if (!shi_cholesky(m, SH_COUNT(order), least)) {
+        status = SH_WARNING_UNDETERMINED;
+        total = shi_fit_matrix(&fit, lambda, least, m);
+        if (!shi_cholesky(m, SH_COUNT(order), 0.0))
+            return SH_ERROR_ARGUMENT;
+    }
+    for (int k = 0; k < channels; k++)
+        shi_fit_channel(&fit, order, value + (size_t)k * count, total, m, c + k * SH_COUNT(order));
+    return status;
 }
 
 #ifndef SH_NO_BATCH

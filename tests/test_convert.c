@@ -147,7 +147,7 @@ static void unity(void) {
         NEAR(u[k], k == 0, 0);
 }
 
-/* Babylon: the polynomial itself, and SphericalPolynomial.FromHarmonics with its constants, from orthonormal coefficients. */
+/* Babylon: the polynomial itself, and SphericalPolynomial.FromHarmonics with its constants, from its harmonics. */
 static void babylon(void) {
     for (int i = 0; i < 100; i++) {
         float c[9], p[9], f[9], n[3], back[9];
@@ -156,14 +156,18 @@ static void babylon(void) {
         random_light(c);
         test_direction(n);
         sh_to_babylon(c, p);
-        sh_to_orthonormal(SH_L2, c, 0, f);
+        sh_to_orthonormal(SH_L2, c, SH_CONDON_SHORTLEY, f);
         for (int k = 0; k < 9; k++)
             h[k] = (double)f[k] / 3.14159265358979;
-        const double expected[9] = { h[3] * 1.02333,  h[1] * 1.02333,  h[2] * 1.02333,
+        const double expected[9] = { h[3] * -1.02333,
+                                     h[1] * -1.02333,
+                                     h[2] * 1.02333,
                                      h[0] * 0.886277 - h[6] * 0.247708 + h[8] * 0.429043,
                                      h[0] * 0.886277 - h[6] * 0.247708 - h[8] * 0.429043,
                                      h[0] * 0.886277 + h[6] * 0.495417,
-                                     h[5] * 0.858086, h[7] * 0.858086, h[4] * 0.858086 };
+                                     h[5] * -0.858086,
+                                     h[7] * -0.858086,
+                                     h[4] * 0.858086 };
         NEAR_ALL(p, expected, 9, 3e-4); /* its 0.886277 is sqrt(pi) / 2 = 0.886227 with two digits swapped */
         const float value = p[0] * n[0] + p[1] * n[1] + p[2] * n[2] + p[3] * n[0] * n[0] + p[4] * n[1] * n[1] + p[5] * n[2] * n[2] +
                             p[6] * n[1] * n[2] + p[7] * n[2] * n[0] + p[8] * n[0] * n[1];
