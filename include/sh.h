@@ -253,7 +253,8 @@ SHI_FUNCTION void sh_add_segment(int order, int channels, const float a[3], cons
 
 /* Adds `count` spheres x, y, z, radius, of radiance[i * channels + k], and skips the negligible: those left out change irradiance / pi
  * (true or reconstructed) by at most `tolerance` together, in any channel at any normal. Returns how many were added. The bound:
- * a sphere's irradiance / pi is at most L r^2 / d^2, and its L2 reconstruction 17/16 of that. */
+ * a sphere's irradiance / pi is at most L r^2 / d^2, and its L2 reconstruction 17/16 of that. Most are skipped if they come in
+ * descending order of it. */
 SHI_FUNCTION size_t sh_add_spheres(int order, int channels, const float *spheres, const float *radiance, size_t count, float tolerance,
                                    float *c);
 
@@ -1257,7 +1258,7 @@ SHI_FUNCTION size_t sh_add_spheres(int order, int channels, const float *spheres
             most = fmax(most, fabs((double)radiance[k]));
         const double square = shi_dot(p, p), rr = (double)spheres[3] * (double)spheres[3];
         const double bound = rr < square ? 17.0 / 16.0 * most * rr / square : most;
-        if (skipped + bound <= (double)tolerance) {
+        if (bound * (double)(count - i) <= (double)tolerance - skipped) { /* its share of what is left, for it and all that follow */
             skipped += bound;
             continue;
         }
