@@ -147,7 +147,7 @@ static void measure_all(const bench_list *list, int quick, bench_result *results
     for (int i = 0; i < list->count; i++) {
         bench_case *test = &list->cases[i];
         test->prepare(test);
-        results[i] = quick ? bench_measure(test, 0.02, 5) : bench_measure(test, 0.7, 5);
+        results[i] = quick ? bench_measure(test, 0.012, 5) : bench_measure(test, 0.7, 5);
         bench_free_all();
         bench_print_result(&results[i], i ? &results[i - 1] : NULL);
     }

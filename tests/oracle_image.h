@@ -130,12 +130,12 @@ static inline void oracle_fejer(int count, long double *weight) {
 
 /* The rows (polar), or the columns, of an image, integrated over their extents; the polar axis weighs angles by half their sine. */
 static inline void oracle_axis_area(int count, int polar, oracle_trig *axis) {
-    enum { COUNT = 24 };
+    const int nodes = count < 8 ? 24 : 10; /* enough for cos(2 angle) over a whole turn, and over an eighth of one */
     const long double width = (polar ? 1.0L : 2.0L) * oracle_pi / count;
-    long double node[COUNT], weight[COUNT];
-    oracle_gauss(COUNT, 0.0L, width, node, weight);
+    long double node[24], weight[24];
+    oracle_gauss(nodes, 0.0L, width, node, weight);
     for (int i = 0; i < count; i++)
-        for (int k = 0; k < COUNT; k++) {
+        for (int k = 0; k < nodes; k++) {
             const long double angle = width * i + node[k];
             oracle_trig_add(angle, weight[k] * (polar ? 0.5L * sinl(angle) : 0.5L / oracle_pi), &axis[i]);
         }

@@ -46,7 +46,7 @@ static void sizes(void) {
     check_size(20000, 2, 1, 0.0);
 }
 
-/* Nothing but the mean of a constant image is left, to 1e-7 of it; at any width for areas. */
+/* Nothing but the mean of a constant image is left, to 1e-7 of it: at any size for areas, at any width for three rows of points. */
 static void check_constant(int width, int height, float value, unsigned flags) {
     test_image of = test_image_create(width, height, 1, SH_F32, test_tight);
     float c[SH_COUNT(SH_L2)];
@@ -64,7 +64,7 @@ static void constants(void) {
     for (int width = 1; width <= 130; width += width < 20 ? 1 : 11)
         for (int height = 1; height <= 66; height += height < 9 ? 1 : 19)
             for (size_t f = 0; f < 2; f++)
-                if (allowed(width, height, all_flags[f]))
+                if (height >= 3 || all_flags[f] == 0)
                     check_constant(width, height, 0.7f, all_flags[f]);
     check_constant(1024, 512, 1.0f, 0);
     check_constant(1000, 333, 3.3f, SH_POINT_TEXELS);
