@@ -11,6 +11,7 @@
 #endif
 
 #include "bench_eval.h"
+#include "bench_operators.h"
 #include "bench_project.h"
 #include "bench_sample.h"
 #include "bench_svg.h"
@@ -69,6 +70,7 @@ static bench_list matching_cases(const char *filter) {
     bench_eval_cases(&all);
     bench_sample_cases(&all);
     bench_project_cases(&all);
+    bench_operator_cases(&all);
     int kept = 0;
     for (int i = 0; i < all.count; i++)
         if (!filter || strstr(all.cases[i].name, filter))

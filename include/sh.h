@@ -604,8 +604,21 @@ SHI_FUNCTION void sh_zonal_laplacian(float lambda, float zonal[3]) {
 }
 
 SHI_INLINE void sh_convolve(int order, const float *c, const float zonal[3], float *out) {
-    for (int i = 0; i < SH_COUNT(order); i++)
-        out[i] = zonal[i < 1 ? 0 : i < 4 ? 1 : 2] * c[i];
+    out[SH_R0] = zonal[0] * c[SH_R0];
+    if (order >= SH_L1) {
+        const float k1 = zonal[1], x = k1 * c[SH_X], y = k1 * c[SH_Y], z = k1 * c[SH_Z];
+        out[SH_X] = x;
+        out[SH_Y] = y;
+        out[SH_Z] = z;
+    }
+    if (order >= SH_L2) {
+        const float k2 = zonal[2], xx = k2 * c[SH_XX], xy = k2 * c[SH_XY], xz = k2 * c[SH_XZ], yy = k2 * c[SH_YY], yz = k2 * c[SH_YZ];
+        out[SH_XX] = xx;
+        out[SH_XY] = xy;
+        out[SH_XZ] = xz;
+        out[SH_YY] = yy;
+        out[SH_YZ] = yz;
+    }
 }
 
 SHI_INLINE void sh_zonal_add(int order, const float zonal[3], const float dir[3], float value, float *c) {
@@ -948,12 +961,20 @@ SHI_INLINE void shi_add_lobe(int order, int channels, const float *lobe, const f
 }
 
 /* Adds value[k] * the zonal lobe about dir. */
-SHI_INLINE void shi_add_zonal(int order, int channels, const float zonal[3], const float dir[3], const float *value, float *c) {
+SHI_INLINE void shi_add_zonal_scalar(int order, int channels, const float zonal[3], const float dir[3], const float *value, float *c) {
     const float x = dir[0], y = dir[1], z = dir[2], k1 = zonal[1], k2 = zonal[2], third = 1.0f / 3.0f;
     const float lobe[9] = { zonal[0],  k1 * x,        k1 * y, k1 * z, k2 * (x * x - third), k2 * (x * y), k2 * (x * z),
                             k2 * (y * y - third), k2 * (y * z) };
     shi_add_lobe(order, channels, lobe, value, c);
 }
+
+/* The same, on vectors where there are any: defined with them. */
+SHI_INLINE void shi_add_zonal(int order, int channels, const float zonal[3], const float dir[3], const float *value, float *c);
+#ifdef SH_NO_BATCH
+SHI_INLINE void shi_add_zonal(int order, int channels, const float zonal[3], const float dir[3], const float *value, float *c) {
+    shi_add_zonal_scalar(order, channels, zonal, dir, value, c);
+}
+#endif
 
 SHI_INLINE void sh_add_ambient(int order, int channels, const float *radiance, float *c) {
     for (int k = 0; k < channels; k++)
@@ -1397,9 +1418,12 @@ SHI_FUNCTION int shi_positive_definite(double m[4][4]) {
     for (int k = 0; k < 4; k++) {
         if (!(m[k][k] > 0.0))
             return 0;
-        for (int i = k + 1; i < 4; i++)
+        const double inverse = 1.0 / m[k][k];
+        for (int i = k + 1; i < 4; i++) {
+            const double factor = inverse * m[i][k];
             for (int j = k + 1; j < 4; j++)
-                m[i][j] -= m[i][k] * m[k][j] / m[k][k];
+                m[i][j] -= factor * m[k][j];
+        }
     }
     return 1;
 }
@@ -1443,9 +1467,9 @@ SHI_FUNCTION float shi_from_half(uint16_t h) {
     return h & 0x8000u ? -x : x;
 }
 
-SHI_FUNCTION void shi_halves_to_floats(int count, const uint16_t *in, int exponent, float *out) {
+SHI_FUNCTION void shi_halves_to_floats(int count, const uint16_t *in, double scale, float *out) {
     for (int i = 0; i < count; i++)
-        out[i] = ldexpf(shi_from_half(in[i]), exponent);
+        out[i] = (float)(scale * (double)shi_from_half(in[i]));
 }
 
 SHI_FUNCTION void sh_pack_half(int order, int channels, const float *c, uint16_t *out) {
@@ -1457,14 +1481,15 @@ SHI_FUNCTION void sh_pack_half(int order, int channels, const float *c, uint16_t
     if (most > 0.0f)
         frexpf(most, &exponent);
     exponent -= 15;
+    const double scale = ldexp(1.0, -exponent);
     for (int k = 0; k < channels; k++) {
         uint16_t *half = out + k * count;
         float decoded[9];
         for (int i = 0; i < count; i++)
-            half[i] = shi_to_half(ldexpf(c[k * count + i], -exponent));
-        if (!shi_realizable(order, c + k * count, SHI_SLACK_BEFORE))
+            half[i] = shi_to_half((float)(scale * (double)c[k * count + i]));
+        shi_halves_to_floats(count, half, 1.0, decoded);
+        if (shi_realizable(order, decoded, SHI_SLACK_AFTER) || !shi_realizable(order, c + k * count, SHI_SLACK_BEFORE))
             continue;
-        shi_halves_to_floats(count, half, 0, decoded);
         for (int step = 0; step < 8 && !shi_realizable(order, decoded, SHI_SLACK_AFTER); step++)
             decoded[SH_R0] = shi_from_half(++half[SH_R0]);
     }
@@ -1473,7 +1498,7 @@ SHI_FUNCTION void sh_pack_half(int order, int channels, const float *c, uint16_t
 
 SHI_FUNCTION void sh_unpack_half(int order, int channels, const uint16_t *in, float *out) {
     const int count = channels * SH_COUNT(order), word = in[count];
-    shi_halves_to_floats(count, in, word < 0x8000 ? word : word - 0x10000, out);
+    shi_halves_to_floats(count, in, ldexp(1.0, word < 0x8000 ? word : word - 0x10000), out);
 }
 
 /* Ratios are coded as zero + scale * ratio, in [0, 2^bits - 1]. */
@@ -1497,9 +1522,10 @@ SHI_FUNCTION void shi_decode_ratios(int order, const uint16_t *code, int bits, f
 }
 
 SHI_FUNCTION void shi_encode_ratios(int order, const float *c, int bits, double shrink, uint16_t *code) {
+    const double inverse = c[SH_R0] > 0.0f ? shrink / (double)c[SH_R0] : 0.0;
     for (int i = SH_X; i < SH_COUNT(order); i++) {
         const shi_ratio ratio = shi_ratio_code(i, bits);
-        const double t = c[SH_R0] > 0.0f ? shrink * (double)c[i] / (double)c[SH_R0] : 0.0;
+        const double t = inverse * (double)c[i];
         code[i - 1] = (uint16_t)(ratio.zero + ratio.scale * (!(t > ratio.least) ? ratio.least : t > ratio.most ? ratio.most : t) + 0.5);
     }
 }
@@ -1507,14 +1533,11 @@ SHI_FUNCTION void shi_encode_ratios(int order, const float *c, int bits, double 
 /* Codes of one channel that decode to a realizable set if c is one. */
 SHI_FUNCTION void shi_pack_ratios(int order, const float *c, int bits, uint16_t *code) {
     float decoded[9];
-    shi_encode_ratios(order, c, bits, 1.0, code);
-    if (!shi_realizable(order, c, SHI_SLACK_BEFORE))
-        return;
-    for (int step = 1; step < 64; step++) {
-        shi_decode_ratios(order, code, bits, 1.0f, decoded);
-        if (shi_realizable(order, decoded, SHI_SLACK_AFTER))
-            return;
+    for (int step = 0; step < 64; step++) {
         shi_encode_ratios(order, c, bits, 1.0 - step / (2.0 * (1 << bits)), code);
+        shi_decode_ratios(order, code, bits, 1.0f, decoded);
+        if (shi_realizable(order, decoded, SHI_SLACK_AFTER) || (step == 0 && !shi_realizable(order, c, SHI_SLACK_BEFORE)))
+            return;
     }
 }
 
@@ -2707,6 +2730,41 @@ SHI_FUNCTION void sh_product_batch(int order, const float *a, const float *b, fl
     default: shi_product_planes(SH_L2, a, b, out, count); break;
     }
 }
+
+#if SHI_LANES > 1 && SHI_LANES <= 8
+/* x, y, z, xx - 1/3, ... , yz are products p q - r, whose factors are spread over the lanes as in shi_rotation_vector. Bands above
+ * `order` are not for this function. */
+SHI_INLINE shi_v shi_zonal_vector(const float zonal[3], const float dir[3], int first) {
+    static const float p_is[3][8] = { { 1, 0, 0, 1, 1, 1 }, { 0, 1, 0, 0, 0, 0, 1, 1 }, { 0, 0, 1 } };
+    static const float q_is[4][8] = { { 1, 1, 1 }, { 0, 0, 0, 1 }, { 0, 0, 0, 0, 1, 0, 1 }, { 0, 0, 0, 0, 0, 1, 0, 1 } };
+    static const float minus_r[8] = { 0, 0, 0, -1.0f / 3.0f, 0, 0, -1.0f / 3.0f }, second[8] = { 0, 0, 0, 1, 1, 1, 1, 1 };
+    const shi_v x = shi_splat(dir[0]), y = shi_splat(dir[1]), z = shi_splat(dir[2]);
+    const shi_v p = shi_madd(shi_load(p_is[0] + first), x, shi_madd(shi_load(p_is[1] + first), y, shi_mul(shi_load(p_is[2] + first), z)));
+    const shi_v q = shi_madd(shi_load(q_is[1] + first), x, shi_madd(shi_load(q_is[2] + first), y,
+                             shi_madd(shi_load(q_is[3] + first), z, shi_load(q_is[0] + first))));
+    const shi_v k = shi_madd(shi_load(second + first), shi_splat(zonal[2]), shi_mul(shi_load(q_is[0] + first), shi_splat(zonal[1])));
+    return shi_mul(k, shi_madd(p, q, shi_load(minus_r + first)));
+}
+
+SHI_INLINE void shi_add_zonal(int order, int channels, const float zonal[3], const float dir[3], const float *value, float *c) {
+    if (order < SH_L2) {
+        shi_add_zonal_scalar(order, channels, zonal, dir, value, c);
+        return;
+    }
+    for (int k = 0; k < channels; k++)
+        c[k * SH_COUNT(SH_L2)] += value[k] * zonal[0];
+    for (int first = 0; first < SHI_ROTATED; first += SHI_LANES) {
+        const shi_v lobe = shi_zonal_vector(zonal, dir, first);
+        float *at = c + SH_X + first;
+        for (int k = 0; k < channels; k++, at += SH_COUNT(SH_L2))
+            shi_store(at, shi_madd(shi_splat(value[k]), lobe, shi_load(at)));
+    }
+}
+#else
+SHI_INLINE void shi_add_zonal(int order, int channels, const float zonal[3], const float dir[3], const float *value, float *c) {
+    shi_add_zonal_scalar(order, channels, zonal, dir, value, c);
+}
+#endif
 
 /* ---- Images ---------------------------------------------------------------------------------------------------------------------
  * Rows are read in blocks of up to SHI_BLOCK pixels: in place where they are clean floats, decoded to floats otherwise, padded with
