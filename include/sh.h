@@ -2643,68 +2643,72 @@ SHI_FUNCTION void sh_rotate_batch(int order, const float *c, const float m[9], f
     }
 }
 
-/* sh_product on vectors: as there, a lane for each pair. */
-SHI_INLINE void shi_product_first(const shi_v *a, const shi_v *b, shi_v *out) {
-    for (int i = SH_X; i <= SH_Z; i++)
-        out[i] = shi_madd(a[SH_R0], b[i], shi_mul(b[SH_R0], a[i]));
+/* A v + sum, for a row p, q, r of a matrix. */
+SHI_INLINE shi_v shi_madd_row(shi_v p, shi_v q, shi_v r, shi_v x, shi_v y, shi_v z, shi_v sum) {
+    return shi_madd(p, x, shi_madd(q, y, shi_madd(r, z, sum)));
 }
 
-/* out += 3 (A v), for a symmetric matrix given by three of its rows' entries at a time. */
-SHI_INLINE shi_v shi_madd_row(shi_v p, shi_v q, shi_v r, const shi_v *v, shi_v sum) {
-    return shi_madd(p, v[SH_X], shi_madd(q, v[SH_Y], shi_madd(r, v[SH_Z], sum)));
+/* An entry off the diagonal: first is of a1 b1' + b1 a1', second of AB + BA. */
+SHI_INLINE shi_v shi_product_rest(shi_v a0, shi_v b0, shi_v a, shi_v b, shi_v first, shi_v second) {
+    const shi_v sum = shi_madd(shi_splat(0.6f), first, shi_mul(shi_splat(15.0f / 7.0f), second));
+    return shi_madd(a0, b, shi_madd(b0, a, sum));
 }
 
-SHI_INLINE void shi_product_vectors(int order, const shi_v *a, const shi_v *b, shi_v *out) {
-    out[SH_R0] = shi_mul(a[SH_R0], b[SH_R0]);
-    if (order < SH_L1)
+/* sh_product of SHI_LANES pairs whose planes are `stride` floats apart. Named vectors, not arrays, and stores last: compilers keep them
+ * in registers, and out may be a or b. */
+SHI_INLINE void shi_product_block(int order, const float *a, const float *b, float *out, size_t stride) {
+    const shi_v three = shi_splat(3.0f), zero = shi_splat(0.0f);
+    const shi_v a0 = shi_load(a), b0 = shi_load(b);
+    if (order < SH_L1) {
+        shi_store(out, shi_mul(a0, b0));
         return;
-    const shi_v x = shi_mul(a[SH_X], b[SH_X]), y = shi_mul(a[SH_Y], b[SH_Y]), z = shi_mul(a[SH_Z], b[SH_Z]);
-    const shi_v dot = shi_add(shi_add(x, y), z), three = shi_splat(3.0f), zero = shi_splat(0.0f);
-    out[SH_R0] = shi_madd(three, dot, out[SH_R0]);
-    shi_product_first(a, b, out);
-    if (order < SH_L2)
+    }
+    const shi_v ax = shi_load(a + SH_X * stride), ay = shi_load(a + SH_Y * stride), az = shi_load(a + SH_Z * stride);
+    const shi_v bx = shi_load(b + SH_X * stride), by = shi_load(b + SH_Y * stride), bz = shi_load(b + SH_Z * stride);
+    const shi_v x = shi_mul(ax, bx), y = shi_mul(ay, by), z = shi_mul(az, bz), dot = shi_add(shi_add(x, y), z);
+    const shi_v p0 = shi_madd(three, dot, shi_mul(a0, b0));
+    const shi_v px = shi_madd(a0, bx, shi_mul(b0, ax)), py = shi_madd(a0, by, shi_mul(b0, ay)), pz = shi_madd(a0, bz, shi_mul(b0, az));
+    if (order < SH_L2) {
+        shi_store(out, p0);
+        shi_store(out + SH_X * stride, px);
+        shi_store(out + SH_Y * stride, py);
+        shi_store(out + SH_Z * stride, pz);
         return;
-    const shi_v axx = a[SH_XX], axy = a[SH_XY], axz = a[SH_XZ], ayy = a[SH_YY], ayz = a[SH_YZ];
-    const shi_v bxx = b[SH_XX], bxy = b[SH_XY], bxz = b[SH_XZ], byy = b[SH_YY], byz = b[SH_YZ];
+    }
+    const shi_v axx = shi_load(a + SH_XX * stride), axy = shi_load(a + SH_XY * stride), axz = shi_load(a + SH_XZ * stride);
+    const shi_v ayy = shi_load(a + SH_YY * stride), ayz = shi_load(a + SH_YZ * stride);
+    const shi_v bxx = shi_load(b + SH_XX * stride), bxy = shi_load(b + SH_XY * stride), bxz = shi_load(b + SH_XZ * stride);
+    const shi_v byy = shi_load(b + SH_YY * stride), byz = shi_load(b + SH_YZ * stride);
     const shi_v minus_azz = shi_add(axx, ayy), minus_bzz = shi_add(bxx, byy);
     const shi_v azz = shi_sub(zero, minus_azz), bzz = shi_sub(zero, minus_bzz);
-    const shi_v vx = shi_madd_row(axx, axy, axz, b, shi_madd_row(bxx, bxy, bxz, a, zero));
-    const shi_v vy = shi_madd_row(axy, ayy, ayz, b, shi_madd_row(bxy, byy, byz, a, zero));
-    const shi_v vz = shi_madd_row(axz, ayz, azz, b, shi_madd_row(bxz, byz, bzz, a, zero));
-    out[SH_X] = shi_madd(three, vx, out[SH_X]);
-    out[SH_Y] = shi_madd(three, vy, out[SH_Y]);
-    out[SH_Z] = shi_madd(three, vz, out[SH_Z]);
 
-    const shi_v xy = shi_mul(axy, bxy), xz = shi_mul(axz, bxz), yz = shi_mul(ayz, byz);
-    const shi_v sxx = shi_madd(axx, bxx, shi_add(xy, xz)), syy = shi_madd(ayy, byy, shi_add(xy, yz));
-    const shi_v szz = shi_madd(minus_azz, minus_bzz, shi_add(xz, yz)), trace = shi_add(shi_add(sxx, syy), szz);
+    const shi_v vx = shi_madd_row(axx, axy, axz, bx, by, bz, shi_madd_row(bxx, bxy, bxz, ax, ay, az, zero));
+    const shi_v vy = shi_madd_row(axy, ayy, ayz, bx, by, bz, shi_madd_row(bxy, byy, byz, ax, ay, az, zero));
+    const shi_v vz = shi_madd_row(axz, ayz, azz, bx, by, bz, shi_madd_row(bxz, byz, bzz, ax, ay, az, zero));
+    const shi_v rx = shi_madd(three, vx, px), ry = shi_madd(three, vy, py), rz = shi_madd(three, vz, pz);
+
     const shi_v sxy = shi_madd(axz, byz, shi_madd(ayz, bxz, shi_madd(axy, minus_bzz, shi_mul(bxy, minus_azz))));
     const shi_v sxz = shi_sub(shi_madd(axy, byz, shi_mul(ayz, bxy)), shi_madd(axz, byy, shi_mul(bxz, ayy)));
     const shi_v syz = shi_sub(shi_madd(axy, bxz, shi_mul(axz, bxy)), shi_madd(ayz, bxx, shi_mul(byz, axx)));
-    const shi_v isotropic = shi_madd(shi_splat(-0.4f), dot, shi_mul(shi_splat(-10.0f / 7.0f), trace));
-    const shi_v diagonal[2] = { shi_madd(shi_splat(1.2f), x, shi_madd(shi_splat(30.0f / 7.0f), sxx, isotropic)),
-                                shi_madd(shi_splat(1.2f), y, shi_madd(shi_splat(30.0f / 7.0f), syy, isotropic)) };
-    const shi_v f1 = shi_splat(0.6f), f2 = shi_splat(15.0f / 7.0f);
-    const shi_v second[5] = { diagonal[0],
-                              shi_madd(f1, shi_madd(a[SH_X], b[SH_Y], shi_mul(a[SH_Y], b[SH_X])), shi_mul(f2, sxy)),
-                              shi_madd(f1, shi_madd(a[SH_X], b[SH_Z], shi_mul(a[SH_Z], b[SH_X])), shi_mul(f2, sxz)),
-                              diagonal[1],
-                              shi_madd(f1, shi_madd(a[SH_Y], b[SH_Z], shi_mul(a[SH_Z], b[SH_Y])), shi_mul(f2, syz)) };
-    out[SH_R0] = shi_madd(shi_splat(7.5f), trace, out[SH_R0]);
-    for (int i = 0; i < 5; i++)
-        out[SH_XX + i] = shi_madd(a[SH_R0], b[SH_XX + i], shi_madd(b[SH_R0], a[SH_XX + i], second[i]));
-}
+    const shi_v rxy = shi_product_rest(a0, b0, axy, bxy, shi_madd(ax, by, shi_mul(ay, bx)), sxy);
+    const shi_v rxz = shi_product_rest(a0, b0, axz, bxz, shi_madd(ax, bz, shi_mul(az, bx)), sxz);
+    const shi_v ryz = shi_product_rest(a0, b0, ayz, byz, shi_madd(ay, bz, shi_mul(az, by)), syz);
 
-/* SHI_LANES pairs whose planes are `stride` floats apart. */
-SHI_INLINE void shi_product_block(int order, const float *a, const float *b, float *out, size_t stride) {
-    shi_v va[SH_COUNT(SH_L2)], vb[SH_COUNT(SH_L2)], product[SH_COUNT(SH_L2)];
-    for (int i = 0; i < SH_COUNT(order); i++) {
-        va[i] = shi_load(a + (size_t)i * stride);
-        vb[i] = shi_load(b + (size_t)i * stride);
-    }
-    shi_product_vectors(order, va, vb, product);
-    for (int i = 0; i < SH_COUNT(order); i++)
-        shi_store(out + (size_t)i * stride, product[i]);
+    const shi_v xy = shi_mul(axy, bxy), xz = shi_mul(axz, bxz), yz = shi_mul(ayz, byz);
+    const shi_v sxx = shi_madd(axx, bxx, shi_add(xy, xz)), syy = shi_madd(ayy, byy, shi_add(xy, yz));
+    const shi_v szz = shi_madd(azz, bzz, shi_add(xz, yz)), trace = shi_add(shi_add(sxx, syy), szz);
+    const shi_v isotropic = shi_madd(shi_splat(-0.4f), dot, shi_mul(shi_splat(-10.0f / 7.0f), trace));
+    const shi_v dxx = shi_madd(shi_splat(1.2f), x, shi_madd(shi_splat(30.0f / 7.0f), sxx, isotropic));
+    const shi_v dyy = shi_madd(shi_splat(1.2f), y, shi_madd(shi_splat(30.0f / 7.0f), syy, isotropic));
+    shi_store(out, shi_madd(shi_splat(7.5f), trace, p0));
+    shi_store(out + SH_X * stride, rx);
+    shi_store(out + SH_Y * stride, ry);
+    shi_store(out + SH_Z * stride, rz);
+    shi_store(out + SH_XX * stride, shi_madd(a0, bxx, shi_madd(b0, axx, dxx)));
+    shi_store(out + SH_XY * stride, rxy);
+    shi_store(out + SH_XZ * stride, rxz);
+    shi_store(out + SH_YY * stride, shi_madd(a0, byy, shi_madd(b0, ayy, dyy)));
+    shi_store(out + SH_YZ * stride, ryz);
 }
 
 SHI_INLINE void shi_product_planes(int order, const float *a, const float *b, float *out, size_t count) {
