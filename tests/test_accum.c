@@ -167,6 +167,30 @@ static void no_stagnation(void) {
     NEAR(c[SH_X], 0.6f, 6e-8);
 }
 
+/* Equal samples: their roundings do not average out. */
+static void equal_samples(void) {
+    enum { SAMPLES = 20000 };
+    static float sx[SAMPLES], sy[SAMPLES], sz[SAMPLES], values[SAMPLES], weights[SAMPLES];
+    for (int i = 0; i < SAMPLES; i++) {
+        sx[i] = 0.36f;
+        sy[i] = 0.48f;
+        sz[i] = 0.8f;
+        values[i] = 0.1f;
+        weights[i] = 0.7f;
+    }
+    for (int weighted = 0; weighted <= 1; weighted++) {
+        const long double dir[3] = { (long double)sx[0], (long double)sy[0], (long double)sz[0] };
+        long double expected[9];
+        float c[9];
+        test_section("equal samples, weighted %d", weighted);
+        oracle_basis(dir, expected);
+        for (int i = 0; i < 9; i++)
+            expected[i] *= (long double)values[0];
+        EQUAL(sh_project_samples(SH_L2, 1, sx, sy, sz, values, weighted ? weights : NULL, SAMPLES, c), SH_OK);
+        NEAR_ALL(c, expected, 9, 1e-7L * (long double)values[0]); /* the contract */
+    }
+}
+
 static void run_tests(void) {
     random_samples();
     sums();
@@ -174,4 +198,5 @@ static void run_tests(void) {
     merging();
     empty_and_weightless();
     no_stagnation();
+    equal_samples();
 }
