@@ -5,7 +5,7 @@
 #include "bench_engine.h"
 #include "bench_eval.h"
 
-enum { OP_RGB = 27 };
+enum { OP_RGB = 27, OP_PROBES = 4 };
 
 typedef enum operator_kind {
     OP_ROTATE,
@@ -23,7 +23,7 @@ typedef enum operator_kind {
 
 typedef struct operator_data {
     const float *in, *dirs, *rgbs; /* sets of 27; directions; colours */
-    float *out;                    /* sets of 27; planes for OP_PRODUCT_BATCH; one probe for lights */
+    float *out;                    /* sets of 27; planes for OP_PRODUCT_BATCH; OP_PROBES probes that lights are added to in turn */
     float m[9], zonal[3];
     double wide_m[5][5], gaunt[9][9][9]; /* of orthonormal coefficients */
     engine_rgb *engine_in, *engine_out;  /* [items][9] */
@@ -32,7 +32,12 @@ typedef struct operator_data {
     float *r0;
 } operator_data;
 
-static const float operator_cap = 0.2f, operator_radius = 0.2f;
+static const float operator_radius = 0.2f;
+
+/* Half-angles differ, so that no compiler computes their sines beforehand. */
+static inline float operator_cap(const float dir[3]) {
+    return 0.2f + 0.01f * dir[2];
+}
 
 /* <Y_i Y_j Y_k> integrated, and the 5x5 matrix of a rotation in the second band: Y_i(m d) as a sum of Y_j(d). */
 static inline void operator_tables(operator_data *d) {
@@ -110,7 +115,7 @@ static inline void operator_light(int kind, const float dir[3], const float rgb[
     if (kind == OP_DIRECTIONAL)
         sh_add_directional(SH_L2, 3, dir, rgb, c);
     else if (kind == OP_CAP)
-        sh_add_cap(SH_L2, 3, dir, operator_cap, SH_RADIANCE, rgb, c);
+        sh_add_cap(SH_L2, 3, dir, operator_cap(dir), SH_RADIANCE, rgb, c);
     else if (kind == OP_SPHERE)
         sh_add_sphere(SH_L2, 3, dir, operator_radius, SH_RADIANCE, rgb, c);
     else {
@@ -120,9 +125,9 @@ static inline void operator_light(int kind, const float dir[3], const float rgb[
 }
 
 SHI_INLINE void operator_lights(int kind, operator_data *d, size_t n) {
-    memset(d->out, 0, OP_RGB * sizeof(float));
+    memset(d->out, 0, OP_PROBES * OP_RGB * sizeof(float));
     for (size_t i = 0; i < n; i++)
-        operator_light(kind, d->dirs + 3 * i, d->rgbs + 3 * i, d->out);
+        operator_light(kind, d->dirs + 3 * i, d->rgbs + 3 * i, d->out + i % OP_PROBES * OP_RGB);
 }
 
 static inline void operator_run(bench_case *test) {
@@ -216,7 +221,7 @@ static inline void operator_light_engine(int kind, const operator_data *d, size_
         }
         return;
     }
-    const float cosine = kind == OP_CAP ? cosf(operator_cap) : sqrtf(1.0f - operator_radius * operator_radius);
+    const float cosine = kind == OP_CAP ? cosf(operator_cap(dir)) : sqrtf(1.0f - operator_radius * operator_radius);
     const float band[3] = { 2 * pi * (1 - cosine), pi * (1 - cosine * cosine), pi * cosine * (1 - cosine * cosine) };
     engine_rgb lobe[9] = { { { 0 } } };
     engine_add(SH_L2, dir, one, 1.0f, lobe);
@@ -228,7 +233,7 @@ static inline void operator_light_engine(int kind, const operator_data *d, size_
 static inline void operator_baseline(bench_case *test) {
     operator_data *d = (operator_data *)test->data;
     if (test->kind >= OP_DIRECTIONAL && test->kind <= OP_POLYGON)
-        memset(d->engine_out, 0, 9 * sizeof *d->engine_out);
+        memset(d->engine_out, 0, OP_PROBES * 9 * sizeof *d->engine_out);
     for (size_t i = 0; i < test->items; i++) {
         const engine_rgb *in = d->engine_in + 9 * i;
         engine_rgb *out = d->engine_out + 9 * i;
@@ -250,7 +255,7 @@ static inline void operator_baseline(bench_case *test) {
             for (int j = 3; j < OP_RGB; j++)
                 d->code[24 * i + (size_t)j - 3] = (uint8_t)(127.5f * (in[j / 3].v[j % 3] / (4.0f * in[0].v[j % 3]) + 1.0f));
             break;
-        default: operator_light_engine(test->kind, d, i, d->engine_out);
+        default: operator_light_engine(test->kind, d, i, d->engine_out + i % OP_PROBES * 9);
         }
     }
 }
@@ -324,11 +329,10 @@ static inline double operator_map_error(bench_case *test, int of_baseline) {
     return worst;
 }
 
-/* The probe that all lights were added to, against caps by quadrature and polygons by samples. */
+/* The sum of the probes that the lights were added to, against caps by quadrature and polygons by samples. */
 static inline double operator_light_error(bench_case *test, int of_baseline) {
     operator_data *d = (operator_data *)test->data;
-    const long double angle = (long double)operator_cap, r = (long double)operator_radius;
-    const long double cosine = test->kind == OP_CAP ? cosl(angle) : sqrtl(1.0L - r * r);
+    const long double r = (long double)operator_radius;
     long double sum[9] = { 0 };
     float c[OP_RGB];
     for (size_t i = 0; i < test->items; i++) {
@@ -336,6 +340,8 @@ static inline double operator_light_error(bench_case *test, int of_baseline) {
         oracle_widen(d->dirs + 3 * i, 3, dir);
         oracle_basis(dir, basis);
         if (test->kind != OP_DIRECTIONAL) {
+            const long double angle = (long double)operator_cap(d->dirs + 3 * i);
+            const long double cosine = test->kind == OP_CAP ? cosl(angle) : sqrtl(1.0L - r * r);
             k[0] = (1.0L - cosine) / 2.0L;
             k[1] = (1.0L - cosine * cosine) / 4.0L;
             k[2] = cosine * k[1];
@@ -363,6 +369,11 @@ static inline double operator_light_error(bench_case *test, int of_baseline) {
                         sum[j] += (long double)d->rgbs[3 * i] * mean * basis[j];
                 }
     }
+    for (int p = 1; p < OP_PROBES; p++)
+        for (int j = 0; j < OP_RGB; j++) {
+            d->out[j] += d->out[p * OP_RGB + j];
+            d->engine_out[j / 3].v[j % 3] += d->engine_out[9 * p + j / 3].v[j % 3];
+        }
     if (of_baseline)
         engine_to_moments(SH_L2, d->engine_out, 1.0, c);
     return operator_difference(of_baseline ? c : d->out, sum, 9);

@@ -14,6 +14,7 @@
 #include "bench_operators.h"
 #include "bench_project.h"
 #include "bench_sample.h"
+#include "bench_square.h"
 #include "bench_svg.h"
 
 static const char usage[] = "usage: sh_bench [--list] [--filter TEXT] [--quick] [--json FILE] [--svg FILE] [--help]\n"
@@ -69,7 +70,8 @@ static bench_list matching_cases(const char *filter) {
     bench_list all = { NULL, 0, 0 };
     bench_eval_cases(&all);
     bench_sample_cases(&all);
-    bench_project_cases(&all);
+    bench_equirect_cases(&all);
+    bench_square_cases(&all);
     bench_operator_cases(&all);
     int kept = 0;
     for (int i = 0; i < all.count; i++)
