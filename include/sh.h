@@ -2786,21 +2786,20 @@ SHI_FUNCTION void sh_product_batch(int order, const float *a, const float *b, fl
 }
 
 #if SHI_LANES > 1 && SHI_LANES <= 8
-/* x, y, z, xx - 1/3, ... , yz are products p q - r, whose factors are spread over the lanes as in shi_rotation_vector. Bands above
- * `order` are not for this function. */
-SHI_INLINE shi_v shi_zonal_vector(const float zonal[3], const float dir[3], int first) {
+/* The basis but its 1, as products p q - r, whose factors are spread over the lanes as in shi_rotation_vector. */
+SHI_INLINE shi_v shi_basis_vector(const float dir[3], int first) {
     static const float p_is[3][8] = { { 1, 0, 0, 1, 1, 1 }, { 0, 1, 0, 0, 0, 0, 1, 1 }, { 0, 0, 1 } };
     static const float q_is[4][8] = { { 1, 1, 1 }, { 0, 0, 0, 1 }, { 0, 0, 0, 0, 1, 0, 1 }, { 0, 0, 0, 0, 0, 1, 0, 1 } };
-    static const float minus_r[8] = { 0, 0, 0, -1.0f / 3.0f, 0, 0, -1.0f / 3.0f }, second[8] = { 0, 0, 0, 1, 1, 1, 1, 1 };
+    static const float minus_r[8] = { 0, 0, 0, -1.0f / 3.0f, 0, 0, -1.0f / 3.0f };
     const shi_v x = shi_splat(dir[0]), y = shi_splat(dir[1]), z = shi_splat(dir[2]);
     const shi_v p = shi_madd(shi_load(p_is[0] + first), x, shi_madd(shi_load(p_is[1] + first), y, shi_mul(shi_load(p_is[2] + first), z)));
     const shi_v q = shi_madd(shi_load(q_is[1] + first), x, shi_madd(shi_load(q_is[2] + first), y,
                              shi_madd(shi_load(q_is[3] + first), z, shi_load(q_is[0] + first))));
-    const shi_v k = shi_madd(shi_load(second + first), shi_splat(zonal[2]), shi_mul(shi_load(q_is[0] + first), shi_splat(zonal[1])));
-    return shi_mul(k, shi_madd(p, q, shi_load(minus_r + first)));
+    return shi_madd(p, q, shi_load(minus_r + first));
 }
 
 SHI_INLINE void shi_add_zonal(int order, int channels, const float zonal[3], const float dir[3], const float *value, float *c) {
+    static const float is_first[8] = { 1, 1, 1 }, is_second[8] = { 0, 0, 0, 1, 1, 1, 1, 1 };
     if (order < SH_L2) {
         shi_add_zonal_scalar(order, channels, zonal, dir, value, c);
         return;
@@ -2808,7 +2807,9 @@ SHI_INLINE void shi_add_zonal(int order, int channels, const float zonal[3], con
     for (int k = 0; k < channels; k++)
         c[k * SH_COUNT(SH_L2)] += value[k] * zonal[0];
     for (int first = 0; first < SHI_ROTATED; first += SHI_LANES) {
-        const shi_v lobe = shi_zonal_vector(zonal, dir, first);
+        const shi_v k1 = shi_splat(zonal[1]), k2 = shi_splat(zonal[2]);
+        const shi_v factor = shi_madd(shi_load(is_first + first), k1, shi_mul(shi_load(is_second + first), k2));
+        const shi_v lobe = shi_mul(factor, shi_basis_vector(dir, first));
         float *at = c + SH_X + first;
         for (int k = 0; k < channels; k++, at += SH_COUNT(SH_L2))
             shi_store(at, shi_madd(shi_splat(value[k]), lobe, shi_load(at)));
