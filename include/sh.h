@@ -159,7 +159,7 @@ SHI_FUNCTION void sh_dominant_light(int order, int channels, const float *c, flo
 /* ---- Operators: one channel, unless they say otherwise --------------------------------------------------------------------------- */
 
 /* Product of the two radiance reconstructions, kept to `order`: light times visibility, environment times mask. Bands of the product
- * above `order` are dropped. Error <= 4e-7 of |a| |b|. At L2, with S = (AB + BA)/2 and dev() the symmetric traceless part:
+ * above `order` are dropped. Error <= 1e-6 of |a| |b|, |a|^2 = sh_dot(a, a). At L2, with S = (AB + BA)/2 and dev() the symmetric traceless part:
  *     a0 b0 + 3 a1.b1 + 15/2 A:B,   a0 b1 + b0 a1 + 3 (A b1 + B a1),   a0 B + b0 A + 6/5 dev(a1 b1') + 30/7 dev(S). */
 SHI_INLINE void sh_product(int order, const float *a, const float *b, float *out);
 
