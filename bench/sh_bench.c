@@ -11,6 +11,7 @@
 #endif
 
 #include "bench_eval.h"
+#include "bench_operators.h"
 #include "bench_project.h"
 #include "bench_sample.h"
 #include "bench_square.h"
@@ -71,6 +72,7 @@ static bench_list matching_cases(const char *filter) {
     bench_sample_cases(&all);
     bench_equirect_cases(&all);
     bench_square_cases(&all);
+    bench_operator_cases(&all);
     int kept = 0;
     for (int i = 0; i < all.count; i++)
         if (!filter || strstr(all.cases[i].name, filter))

@@ -163,6 +163,179 @@ SHI_FUNCTION float sh_average_direction(const float *c, float dir[3]);
  * radiance, R0 - intensity / 4, not negative for a real light. c has `channels` sets of order >= 1. */
 SHI_FUNCTION void sh_dominant_light(int order, int channels, const float *c, float dir[3], float *intensity, float *ambient);
 
+/* ---- Operators: one channel, unless they say otherwise --------------------------------------------------------------------------- */
+
+/* Product of the two radiance reconstructions, kept to `order`: light times visibility, environment times mask. Bands of the product
+ * above `order` are dropped. Error <= 1e-6 of |a| |b|, |a|^2 = sh_dot(a, a). At L2, with S = (AB + BA)/2 and dev() the symmetric traceless part:
+ *     a0 b0 + 3 a1.b1 + 15/2 A:B,   a0 b1 + b0 a1 + 3 (A b1 + B a1),   a0 B + b0 A + 6/5 dev(a1 b1') + 30/7 dev(S). */
+SHI_INLINE void sh_product(int order, const float *a, const float *b, float *out);
+
+/* The light turned by an orthogonal matrix, row-major: what came from d comes from m d. Reflections (determinant -1) included.
+ * R1 -> m R1, R2 -> m R2 m'. Error <= 4e-7 of |c| for |m m' - I| <= 1e-7; never normalised for you. */
+SHI_INLINE void sh_rotate(int order, const float *c, const float m[9], float *out);
+
+/* Row-major matrix of the rotation by quaternion q = x, y, z, w of any length; the identity if q = 0. */
+SHI_FUNCTION void sh_rotation_from_quaternion(const float q[4], float m[9]);
+
+/* The light in other axes: new axis i is old axis |axis[i]| (1 = x, 2 = y, 3 = z), negated if axis[i] < 0. Exact but for zz's rounding.
+ * axis is a signed permutation of 1, 2, 3, not checked. From right-handed z up: { 1, 3, -2 } is right-handed y up (OpenGL, Godot,
+ * three.js), { 1, 3, 2 } left-handed y up (Unity, Babylon, Direct3D), { 1, -2, 3 } left-handed z up (Unreal). */
+SHI_INLINE void sh_swap_axes(int order, const float *c, const int axis[3], float *out);
+SHI_INLINE void sh_z_up_to_y_up(int order, const float *c, float *out);                         /* (x, y, z) -> (x, z, -y) */
+SHI_INLINE void sh_y_up_to_z_up(int order, const float *c, float *out);                         /* its inverse: (x, -z, y) */
+
+/* Radiance from dir through a zonal kernel: c convolved, then looked at. With sh_zonal_ggx and the mirrored view: a specular probe. */
+SHI_INLINE float sh_radiance_zonal(int order, const float *c, const float zonal[3], const float dir[3]);
+
+/* The direction in which unit vector `view`, pointing to the eye, is mirrored by unit normal n: 2 (n.view) n - view. */
+SHI_INLINE void sh_reflect(const float view[3], const float n[3], float out[3]);
+
+/* More kernels, as in "Zonal kernels": of mean 1.
+ * cosine_power: max(0, t)^exponent, exponent >= 0: 1, (s + 1)/(s + 2), s/(s + 3). 0 is the hemisphere, 1 is Lambert.
+ * ggx: the GGX lobe of width alpha (the square of most engines' roughness), in [0, 1], about the mirrored view, seen along the normal
+ *     and weighted by the cosine, as split-sum prefiltering does: 0 is a mirror (1, 1, 1), 1 is Lambert. Error 1e-7. Walter et al.,
+ *     "Microfacet Models for Refraction through Rough Surfaces", 2007; Karis, "Real Shading in Unreal Engine 4", 2013.
+ * sharpness: 1 + s t, the adjustable probe of first-order lighting: 0 averages, 1 is half Lambert, 2 the linear part of Lambert,
+ *     3 the L1 radiance. Not negative for any light if s <= 1. It has no second band. */
+SHI_FUNCTION void sh_zonal_cosine_power(float exponent, float zonal[3]);
+SHI_FUNCTION void sh_zonal_ggx(float alpha, float zonal[3]);
+SHI_FUNCTION void sh_zonal_sharpness(float sharpness, float zonal[3]);
+
+#ifndef SH_NO_BATCH
+/* sh_rotate of `sets` sets in a row, by one matrix: channels, probes, or both. An RGB probe is three sets. */
+SHI_FUNCTION void sh_rotate_batch(int order, const float *c, const float m[9], float *out, size_t sets);
+
+/* sh_product of `count` pairs in planes: coefficient i of pair p is a[i * count + p], and so for b and out. */
+SHI_FUNCTION void sh_product_batch(int order, const float *a, const float *b, float *out, size_t count);
+#endif
+
+/* ---- Lights: each adds to `channels` planar sets; a value is an array of one float per channel ------------------------------------
+ * Positions are relative to the receiver. Nothing is clipped by a surface's horizon, nothing casts a shadow. What is normalised is the
+ * continuous light, never its reconstruction. Errors <= 1e-6 of the light's R0, unless stated. Any magnitude up to 1e18; lights of no
+ * size add nothing, unless their unit says how much light arrives. */
+
+typedef enum sh_unit {
+    SH_RADIANCE,  /* the emitter's radiance: what a camera sees, at whatever distance and size; for a lobe, at its peak */
+    SH_IRRADIANCE /* irradiance / pi of a white surface that faces the light's centre: it is the same at whatever size */
+} sh_unit;
+
+SHI_INLINE void sh_add_ambient(int order, int channels, const float *radiance, float *c);
+
+/* Light from one direction; irradiance / pi at normal incidence. 4 times sh_add_sample's value. */
+SHI_INLINE void sh_add_directional(int order, int channels, const float dir[3], const float *irradiance, float *c);
+
+/* Radiance `sky` above the plane with unit normal `up`, `ground` below. Irradiance / pi is then (sky + ground)/2 + (sky - ground)/2
+ * n.up, exactly. */
+SHI_INLINE void sh_add_hemisphere(int order, int channels, const float up[3], const float *sky, const float *ground, float *c);
+
+/* A cap (a sun, a cone of sky) about dir of half_angle radians, in [0, pi]. A cap of solid angle S has half-angle
+ * 2 asin(sqrt(S / (4 pi))). Facing irradiance / pi is radiance times sin^2(half_angle), or 1 from pi/2 on. */
+SHI_INLINE void sh_add_cap(int order, int channels, const float dir[3], float half_angle, sh_unit unit, const float *value, float *c);
+
+/* A sphere seen from outside is a cap; from inside it is ambient light. A sphere of radius 0 at the receiver adds no radiance. */
+SHI_INLINE void sh_add_sphere(int order, int channels, const float center[3], float radius, sh_unit unit, const float *value, float *c);
+
+/* A von Mises-Fisher lobe (spherical Gaussian) exp(sharpness (t - 1)), sharpness >= 0. */
+SHI_FUNCTION void sh_add_vmf(int order, int channels, const float dir[3], float sharpness, sh_unit unit, const float *value, float *c);
+
+/* A planar polygon, convex or not, without crossings: `count` vertices x, y, z, in either sense; emits from both faces. Exact, by
+ * edge integrals: band l is a sum over edges of -1 / (l (l + 1)) times the outward derivative of the basis; R0 is the solid angle of
+ * a fan of triangles (Van Oosterom and Strackee, 1983). Seen edge on it adds nothing; a receiver on the polygon itself has a
+ * hemisphere of light on one of its sides; one on an edge, something finite. SH_ERROR_ARGUMENT: NULL, or count < 3. */
+SHI_FUNCTION int sh_add_polygon(int order, int channels, const float *vertices, size_t count, const float *radiance, float *c);
+
+/* A parallelogram from its centre and the vectors from there to the middles of two adjacent sides; as sh_add_polygon. */
+SHI_FUNCTION void sh_add_rectangle(int order, int channels, const float center[3], const float half_u[3], const float half_v[3],
+                                   const float *radiance, float *c);
+
+/* A disk with unit normal, emitting from both faces. The same integrals around the rim, by the trapezoidal rule. Error <= 1e-6 of R0
+ * where the rim is farther away than radius / 30; larger nearer to it. On the disk: a hemisphere of light, towards the normal. */
+SHI_FUNCTION void sh_add_disk(int order, int channels, const float center[3], const float normal[3], float radius, const float *radiance,
+                              float *c);
+
+/* A tube from a to b of diameter `width`, small against its distance: the limit of a rectangle that faces the receiver. Nearer to its
+ * axis than width / 2 it grows no brighter; on the axis it adds nothing. */
+SHI_FUNCTION void sh_add_segment(int order, int channels, const float a[3], const float b[3], float width, const float *radiance,
+                                 float *c);
+
+/* Adds `count` spheres x, y, z, radius, of radiance[i * channels + k], and skips the negligible: those left out change irradiance / pi
+ * (true or reconstructed) by at most `tolerance` together, in any channel at any normal. Returns how many were added. The bound:
+ * a sphere's irradiance / pi is at most L r^2 / d^2, and its L2 reconstruction 17/16 of that. Most are skipped if they come in
+ * descending order of it. */
+SHI_FUNCTION size_t sh_add_spheres(int order, int channels, const float *spheres, const float *radiance, size_t count, float tolerance,
+                                   float *c);
+
+/* ---- Conversion and storage: one channel, unless they say otherwise ----------------------------------------------------------------
+ * Sets of other engines, numbered l (l + 1) + m: 1; y, z, x; xy, yz, 3z^2 - 1, xz, x^2 - y^2, in their own axes (sh_swap_axes):
+ *     three.js SphericalHarmonics3, Probulator, sphericart          orthonormal; three.js is interleaved, its getIrradianceAt is pi times
+ *                                                                   sh_irradiance
+ *     DirectXMath, Unreal, google/spherical-harmonics, Blender,     orthonormal with SH_CONDON_SHORTLEY; an "order" of 3 is SH_L2
+ *     Babylon SphericalHarmonics
+ *     Unity SphericalHarmonicsL2, Filament, Babylon preScaled       unity; Unity keeps the channels planar, the others interleaved
+ *     Babylon SphericalPolynomial                                   babylon. What its materials take for an environment was convolved once
+ *                                                                   more: give them the set after sh_convolve by sh_zonal_lambert
+ * A round trip is exact to 4 ulp of the largest coefficient of a band. */
+
+enum { SH_CONDON_SHORTLEY = 1 }; /* phase: coefficients of odd m change sign; 0: all positive */
+
+/* f = integral of L Y dOmega, of orthonormal real Y. out may be c. */
+SHI_FUNCTION void sh_to_orthonormal(int order, const float *c, int phase, float *out);
+SHI_FUNCTION void sh_from_orthonormal(int order, const float *f, int phase, float *out);
+
+/* The factors of the polynomial that is irradiance / pi: E/pi(n) = u0 + u1 y + u2 z + u3 x + u4 xy + ... + u6 (3z^2 - 1) + ... */
+SHI_FUNCTION void sh_to_unity(int order, const float *c, float *out);
+SHI_FUNCTION void sh_from_unity(int order, const float *u, float *out);
+
+/* An L2 set as the factors of x, y, z, xx, yy, zz, yz, zx, xy of irradiance / pi, the order of SphericalPolynomial's members. */
+SHI_FUNCTION void sh_to_babylon(const float *c, float out[9]);
+SHI_FUNCTION void sh_from_babylon(const float p[9], float *out);
+
+/* Planar sets to coefficients of all channels side by side (a vec3 or Vector3 per coefficient), and back. out must not be c. */
+SHI_FUNCTION void sh_interleave(int order, int channels, const float *c, float *out);
+SHI_FUNCTION void sh_deinterleave(int order, int channels, const float *c, float *out);
+
+/* Three L2 sets as seven float4, s[0] to s[6], for irradiance / pi at n by 7 dot products or multiply-adds of a shader. GLSL:
+ *     vec4 p = vec4(n, 1.0), q = n.xyzz * n.yzzx;
+ *     vec3 e = vec3(dot(s[0], p), dot(s[1], p), dot(s[2], p)) + vec3(dot(s[3], q), dot(s[4], q), dot(s[5], q))
+ *            + s[6].rgb * (n.x * n.x - n.y * n.y);
+ * HLSL: the same with float4 p = float4(n, 1.0), q = n.xyzz * n.yzzx; float3 e = float3(...) + float3(...) + ... */
+SHI_FUNCTION void sh_pack_shader(const float *c, float out[28]);
+
+/* `channels` planar sets as halves with one exponent: out has channels * SH_COUNT(order) halves, each coefficient * 2^-e, and e (two's
+ * complement) as its last word. The largest lies in [2^14, 2^15): nothing overflows up to 1e38, and only what is 2^-29 of it becomes
+ * subnormal. A set that non-negative light can have stays one: its R0 is rounded up as far as that needs, 8 steps of a half at most.
+ * Error of irradiance / pi <= 0.003 R0, and <= 0.007 R0 where R0 was rounded up (largest seen: 0.0011, 0.0024). Finite sets only. */
+SHI_FUNCTION void sh_pack_half(int order, int channels, const float *c, uint16_t *out);
+SHI_FUNCTION void sh_unpack_half(int order, int channels, const uint16_t *in, float *out);
+
+/* Sets as their R0, kept in `r0[channel]` for you to store as you like, and ratios to R0 in the ranges that light can have: x, y, z in
+ * [-1, 1], xy, xz, yz in [-1/2, 1/2], xx and yy in [-1/3, 2/3]. 8 bits: SH_COUNT(order) - 1 bytes a channel, in the order of the
+ * coefficients. 10 bits: three to a word, red first (RGB10A2): 0, 1 or 3 words a channel; alpha is 0. 0 is kept exactly; with
+ * n = 2^(bits - 1) - 1, a unorm t decodes to ((2n + 1) t - n - 1) / n, half of that, or t - 1/3.
+ * A set that non-negative light can have stays one, whatever precision R0 is stored in: its ratios are shrunk, as far as that needs.
+ * Error of irradiance / pi <= 0.024 R0 in 8 bits, 0.006 R0 in 10; where ratios had to be shrunk (nearly a single direction) <= 0.12 R0
+ * and 0.03 R0 (largest seen: 0.045, 0.013). Ratios of sets that light cannot have are clamped; R0 <= 0 decodes to R0 alone. */
+SHI_FUNCTION void sh_pack_unorm8(int order, int channels, const float *c, float *r0, uint8_t *ratio);
+SHI_FUNCTION void sh_unpack_unorm8(int order, int channels, const float *r0, const uint8_t *ratio, float *out);
+SHI_FUNCTION void sh_pack_unorm10(int order, int channels, const float *c, float *r0, uint32_t *ratio);
+SHI_FUNCTION void sh_unpack_unorm10(int order, int channels, const float *r0, const uint32_t *ratio, float *out);
+
+/* ---- Fitting -------------------------------------------------------------------------------------------------------------------- */
+
+enum { SH_WARNING_UNDETERMINED = 1 };
+
+/* Least squares: coefficients whose reconstruction is nearest to `count` measurements at directions x[i], y[i], z[i]; for few or uneven
+ * samples, where sh_project_samples, which trusts their distribution, is biased. value is planar: channel k is value[k * count + i];
+ * any number of channels. weight >= 0, NULL: all equal.
+ * zonal: what was measured. NULL: radiance. sh_zonal_lambert's: irradiance / pi.
+ * regularization lambda >= 0 adds lambda l^2 (l + 1)^2 times the mean square of band l of the radiance to the mean square error: bands
+ * that the samples do not need stay small. 1e-3 to 1e-1 for measured light; 0: none.
+ * SH_OK; SH_WARNING_UNDETERMINED if some combination of coefficients hardly changes what is measured (by less than 1e-6 in mean square
+ * where it is 1): c is then the smallest fit. SH_ERROR_ARGUMENT: NULL, bad order or channels, weights whose sum is not positive and
+ * finite, lambda < 0 or NaN; nothing is written. Samples of light of `order` give it back to 1e-6 where the light is determined. */
+SHI_FUNCTION int sh_fit_samples(int order, int channels, const float *x, const float *y, const float *z, const float *value,
+                                const float *weight, size_t count, const float *zonal, float regularization, float *c);
+
 /* ---- Projection from samples and functions -------------------------------------------------------------------------------------- */
 
 SHI_FUNCTION void sh_accum_clear(int channels, sh_accum *accum);
@@ -634,6 +807,913 @@ SHI_FUNCTION void sh_direction_fibonacci(uint32_t i, uint32_t count, float dir[3
     const double golden = 0.61803398874989484820; /* (sqrt 5 - 1) / 2 */
     const double turns = i * golden;
     shi_square_direction(turns - floor(turns), (i + 0.5) / count, dir);
+}
+
+/* ---- Operators ------------------------------------------------------------------------------------------------------------------ */
+
+SHI_INLINE void sh_product(int order, const float *a, const float *b, float *out) {
+    const float a0 = a[SH_R0], b0 = b[SH_R0];
+    if (order < SH_L1) {
+        out[SH_R0] = a0 * b0;
+        return;
+    }
+    const float ax = a[SH_X], ay = a[SH_Y], az = a[SH_Z], bx = b[SH_X], by = b[SH_Y], bz = b[SH_Z];
+    const float x = ax * bx, y = ay * by, z = az * bz, dot = x + y + z;
+    if (order < SH_L2) {
+        out[SH_R0] = a0 * b0 + 3.0f * dot;
+        out[SH_X] = a0 * bx + b0 * ax;
+        out[SH_Y] = a0 * by + b0 * ay;
+        out[SH_Z] = a0 * bz + b0 * az;
+        return;
+    }
+    const float axx = a[SH_XX], axy = a[SH_XY], axz = a[SH_XZ], ayy = a[SH_YY], ayz = a[SH_YZ], azz = -(axx + ayy);
+    const float bxx = b[SH_XX], bxy = b[SH_XY], bxz = b[SH_XZ], byy = b[SH_YY], byz = b[SH_YZ], bzz = -(bxx + byy);
+    /* Diagonal of AB, and twice the rest of its symmetric part by A's and B's zero trace. */
+    const float xy = axy * bxy, xz = axz * bxz, yz = ayz * byz;
+    const float sxx = axx * bxx + xy + xz, syy = ayy * byy + xy + yz, szz = azz * bzz + xz + yz, trace = sxx + syy + szz;
+    const float sxy = axz * byz + ayz * bxz - axy * bzz - bxy * azz;
+    const float sxz = axy * byz + ayz * bxy - axz * byy - bxz * ayy;
+    const float syz = axy * bxz + axz * bxy - ayz * bxx - byz * axx;
+    const float isotropic = -0.4f * dot - 10.0f / 7.0f * trace; /* what dev() takes from the diagonal */
+    out[SH_R0] = a0 * b0 + 3.0f * dot + 7.5f * trace;
+    out[SH_X] = a0 * bx + b0 * ax + 3.0f * (axx * bx + axy * by + axz * bz + bxx * ax + bxy * ay + bxz * az);
+    out[SH_Y] = a0 * by + b0 * ay + 3.0f * (axy * bx + ayy * by + ayz * bz + bxy * ax + byy * ay + byz * az);
+    out[SH_Z] = a0 * bz + b0 * az + 3.0f * (axz * bx + ayz * by + azz * bz + bxz * ax + byz * ay + bzz * az);
+    out[SH_XX] = a0 * bxx + b0 * axx + 1.2f * x + 30.0f / 7.0f * sxx + isotropic;
+    out[SH_XY] = a0 * bxy + b0 * axy + 0.6f * (ax * by + ay * bx) + 15.0f / 7.0f * sxy;
+    out[SH_XZ] = a0 * bxz + b0 * axz + 0.6f * (ax * bz + az * bx) + 15.0f / 7.0f * sxz;
+    out[SH_YY] = a0 * byy + b0 * ayy + 1.2f * y + 30.0f / 7.0f * syy + isotropic;
+    out[SH_YZ] = a0 * byz + b0 * ayz + 0.6f * (ay * bz + az * by) + 15.0f / 7.0f * syz;
+}
+
+/* m R2 m': of the rows of m R2, only the first two are needed. */
+SHI_INLINE void shi_rotate_second(const float *c, const float m[9], float *out) {
+    const float xx = c[SH_XX], xy = c[SH_XY], xz = c[SH_XZ], yy = c[SH_YY], yz = c[SH_YZ], zz = -(xx + yy);
+    const float px = m[0] * xx + m[1] * xy + m[2] * xz, qx = m[3] * xx + m[4] * xy + m[5] * xz;
+    const float py = m[0] * xy + m[1] * yy + m[2] * yz, qy = m[3] * xy + m[4] * yy + m[5] * yz;
+    const float pz = m[0] * xz + m[1] * yz + m[2] * zz, qz = m[3] * xz + m[4] * yz + m[5] * zz;
+    out[SH_XX] = px * m[0] + py * m[1] + pz * m[2];
+    out[SH_XY] = px * m[3] + py * m[4] + pz * m[5];
+    out[SH_XZ] = px * m[6] + py * m[7] + pz * m[8];
+    out[SH_YY] = qx * m[3] + qy * m[4] + qz * m[5];
+    out[SH_YZ] = qx * m[6] + qy * m[7] + qz * m[8];
+}
+
+SHI_INLINE void sh_rotate(int order, const float *c, const float m[9], float *out) {
+    out[SH_R0] = c[SH_R0];
+    if (order >= SH_L1) {
+        const float v[3] = { c[SH_X], c[SH_Y], c[SH_Z] };
+        shi_set3(shi_dot3(m, v), shi_dot3(m + 3, v), shi_dot3(m + 6, v), out + SH_X);
+    }
+    if (order >= SH_L2)
+        shi_rotate_second(c, m, out);
+}
+
+SHI_FUNCTION void sh_rotation_from_quaternion(const float q[4], float m[9]) {
+    const double x = (double)q[0], y = (double)q[1], z = (double)q[2], w = (double)q[3];
+    const double square = x * x + y * y + z * z + w * w, s = square > 0.0 ? 2.0 / square : 0.0;
+    shi_set3((float)(1 - s * (y * y + z * z)), (float)(s * (x * y - w * z)), (float)(s * (x * z + w * y)), m);
+    shi_set3((float)(s * (x * y + w * z)), (float)(1 - s * (x * x + z * z)), (float)(s * (y * z - w * x)), m + 3);
+    shi_set3((float)(s * (x * z - w * y)), (float)(s * (y * z + w * x)), (float)(1 - s * (x * x + y * y)), m + 6);
+}
+
+SHI_INLINE void sh_swap_axes(int order, const float *c, const int axis[3], float *out) {
+    int from[3];
+    float sign[3];
+    for (int i = 0; i < 3; i++) {
+        from[i] = (axis[i] < 0 ? -axis[i] : axis[i]) - 1;
+        sign[i] = axis[i] < 0 ? -1.0f : 1.0f;
+    }
+    out[SH_R0] = c[SH_R0];
+    if (order >= SH_L1) {
+        const float v[3] = { c[SH_X], c[SH_Y], c[SH_Z] };
+        for (int i = 0; i < 3; i++)
+            out[SH_X + i] = sign[i] * v[from[i]];
+    }
+    if (order >= SH_L2) {
+        const float diagonal[3] = { c[SH_XX], c[SH_YY], -(c[SH_XX] + c[SH_YY]) };
+        const float rest[4] = { 0.0f, c[SH_XY], c[SH_XZ], c[SH_YZ] }; /* of axes i and j: at i + j */
+        out[SH_XX] = diagonal[from[0]];
+        out[SH_XY] = sign[0] * sign[1] * rest[from[0] + from[1]];
+        out[SH_XZ] = sign[0] * sign[2] * rest[from[0] + from[2]];
+        out[SH_YY] = diagonal[from[1]];
+        out[SH_YZ] = sign[1] * sign[2] * rest[from[1] + from[2]];
+    }
+}
+
+SHI_INLINE void sh_z_up_to_y_up(int order, const float *c, float *out) {
+    const int axis[3] = { 1, 3, -2 };
+    sh_swap_axes(order, c, axis, out);
+}
+
+SHI_INLINE void sh_y_up_to_z_up(int order, const float *c, float *out) {
+    const int axis[3] = { 1, -3, 2 };
+    sh_swap_axes(order, c, axis, out);
+}
+
+SHI_INLINE float sh_radiance_zonal(int order, const float *c, const float zonal[3], const float dir[3]) {
+    return shi_reconstruct(order, c, dir, zonal[0], 3.0f * zonal[1], 7.5f * zonal[2]);
+}
+
+SHI_INLINE void sh_reflect(const float view[3], const float n[3], float out[3]) {
+    const float twice = 2.0f * shi_dot3(n, view);
+    shi_set3(twice * n[0] - view[0], twice * n[1] - view[1], twice * n[2] - view[2], out);
+}
+
+SHI_FUNCTION void sh_zonal_cosine_power(float exponent, float zonal[3]) {
+    shi_set3(1.0f, 1.0f - 1.0f / (exponent + 2.0f), 1.0f - 3.0f / (exponent + 3.0f), zonal);
+}
+
+SHI_FUNCTION void sh_zonal_sharpness(float sharpness, float zonal[3]) {
+    shi_set3(1.0f, sharpness / 3.0f, 0.0f, zonal);
+}
+
+/* J[k - 1] = integral over [0, 1] of t^k / (1 - q t)^2, k = 1, 2, 3; rest = 1 - q. By q J[k] = J[k - 1] - I[k - 1], where I[k] is the
+ * integral of t^k / (1 - q t); it cancels for small q: there, the sum of (n + 1) q^n / (n + k + 1), below 1e-12 from n = 48 on. */
+SHI_FUNCTION void shi_ggx_integrals(double q, double rest, double J[3]) {
+    if (q < 0.5) {
+        double power = 1.0;
+        J[0] = J[1] = J[2] = 0.0;
+        for (int n = 0; n < 48; n++, power *= q)
+            for (int k = 1; k <= 3; k++)
+                J[k - 1] += (n + 1) * power / (n + k + 1);
+        return;
+    }
+    const double i0 = -log(rest) / q, i1 = (i0 - 1.0) / q, i2 = (i1 - 0.5) / q;
+    J[0] = (1.0 / rest - i0) / q;
+    J[1] = (J[0] - i1) / q;
+    J[2] = (J[1] - i2) / q;
+}
+
+/* The half vector h between normal and light has h.n^2 = (1 + t)/2, so D(h) ~ (1 - q t)^-2 with q = (1 - a^2) / (1 + a^2). */
+SHI_FUNCTION void sh_zonal_ggx(float alpha, float zonal[3]) {
+    const double a = (double)shi_clamp(alpha, 0.0f, 1.0f), aa = a * a;
+    double J[3] = { 1.0, 1.0, 1.0 };
+    if (a > 1e-9)
+        shi_ggx_integrals((1.0 - aa) / (1.0 + aa), 2.0 * aa / (1.0 + aa), J);
+    shi_set3(1.0f, (float)(J[1] / J[0]), (float)(1.5 * J[2] / J[0] - 0.5), zonal);
+}
+
+/* ---- Lights --------------------------------------------------------------------------------------------------------------------- */
+
+/* Adds value[k] * lobe to channel k. Written out, for compilers that do not unroll. */
+SHI_INLINE void shi_add_lobe(int order, int channels, const float *lobe, const float *value, float *c) {
+    for (int k = 0; k < channels; k++, c += SH_COUNT(order)) {
+        const float v = value[k];
+        c[SH_R0] += v * lobe[SH_R0];
+        if (order >= SH_L1) {
+            c[SH_X] += v * lobe[SH_X];
+            c[SH_Y] += v * lobe[SH_Y];
+            c[SH_Z] += v * lobe[SH_Z];
+        }
+        if (order >= SH_L2) {
+            c[SH_XX] += v * lobe[SH_XX];
+            c[SH_XY] += v * lobe[SH_XY];
+            c[SH_XZ] += v * lobe[SH_XZ];
+            c[SH_YY] += v * lobe[SH_YY];
+            c[SH_YZ] += v * lobe[SH_YZ];
+        }
+    }
+}
+
+/* Adds value[k] * the zonal lobe about dir. */
+SHI_INLINE void shi_add_zonal_scalar(int order, int channels, const float zonal[3], const float dir[3], const float *value, float *c) {
+    const float x = dir[0], y = dir[1], z = dir[2], k1 = zonal[1], k2 = zonal[2], third = 1.0f / 3.0f;
+    const float lobe[9] = { zonal[0],  k1 * x,        k1 * y, k1 * z, k2 * (x * x - third), k2 * (x * y), k2 * (x * z),
+                            k2 * (y * y - third), k2 * (y * z) };
+    shi_add_lobe(order, channels, lobe, value, c);
+}
+
+/* The same, on vectors where there are any: defined with them. */
+SHI_INLINE void shi_add_zonal(int order, int channels, const float zonal[3], const float dir[3], const float *value, float *c);
+#ifdef SH_NO_BATCH
+SHI_INLINE void shi_add_zonal(int order, int channels, const float zonal[3], const float dir[3], const float *value, float *c) {
+    shi_add_zonal_scalar(order, channels, zonal, dir, value, c);
+}
+#endif
+
+SHI_INLINE void sh_add_ambient(int order, int channels, const float *radiance, float *c) {
+    for (int k = 0; k < channels; k++)
+        c[k * SH_COUNT(order)] += radiance[k];
+}
+
+SHI_INLINE void sh_add_directional(int order, int channels, const float dir[3], const float *irradiance, float *c) {
+    const float zonal[3] = { 0.25f, 0.25f, 0.25f };
+    shi_add_zonal(order, channels, zonal, dir, irradiance, c);
+}
+
+SHI_INLINE void sh_add_hemisphere(int order, int channels, const float up[3], const float *sky, const float *ground, float *c) {
+    for (int k = 0; k < channels; k++, c += SH_COUNT(order)) {
+        c[SH_R0] += 0.5f * sky[k] + 0.5f * ground[k];
+        if (order >= SH_L1)
+            for (int i = 0; i < 3; i++)
+                c[SH_X + i] += (0.25f * sky[k] - 0.25f * ground[k]) * up[i];
+    }
+}
+
+/* The lobe of a cap with h = 1 - cos(half-angle), which is exact where the cosine has lost the angle. */
+SHI_INLINE void shi_cap_lobe(float h, sh_unit unit, float zonal[3]) {
+    if (unit == SH_IRRADIANCE && h < 1.0f)
+        shi_set3(0.5f / (2.0f - h), 0.25f, 0.25f * (1.0f - h), zonal);
+    else
+        shi_set3(0.5f * h, 0.25f * h * (2.0f - h), 0.25f * (1.0f - h) * h * (2.0f - h), zonal);
+}
+
+SHI_INLINE void sh_add_cap(int order, int channels, const float dir[3], float half_angle, sh_unit unit, const float *value, float *c) {
+    const float s = sinf(0.5f * shi_clamp(half_angle, 0.0f, (float)SHI_PI));
+    float zonal[3];
+    shi_cap_lobe(2.0f * s * s, unit, zonal);
+    shi_add_zonal(order, channels, zonal, dir, value, c);
+}
+
+SHI_INLINE void sh_add_sphere(int order, int channels, const float center[3], float radius, sh_unit unit, const float *value, float *c) {
+    const double x = (double)center[0], y = (double)center[1], z = (double)center[2], r = (double)radius;
+    const double square = x * x + y * y + z * z;
+    float zonal[3], dir[3] = { 0.0f, 0.0f, 1.0f };
+    if (square <= r * r)
+        shi_set3(r > 0.0 || unit == SH_IRRADIANCE ? 1.0f : 0.0f, 0.0f, 0.0f, zonal);
+    else {
+        const double inverse = 1.0 / sqrt(square), sine = r * inverse, ss = sine * sine;
+        shi_set3((float)(x * inverse), (float)(y * inverse), (float)(z * inverse), dir);
+        shi_cap_lobe((float)(ss / (1.0 + sqrt(1.0 - ss))), unit, zonal);
+    }
+    shi_add_zonal(order, channels, zonal, dir, value, c);
+}
+
+/* For a lobe of mean 1, the peak is 2K / (1 - exp(-2K)), facing irradiance / pi 4 (K - 1 + exp(-K)) / (K (1 - exp(-2K))); below
+ * K = 1/1000, their series. */
+SHI_FUNCTION void sh_add_vmf(int order, int channels, const float dir[3], float sharpness, sh_unit unit, const float *value, float *c) {
+    const double k = (double)sharpness, rest = -expm1(-2.0 * k);
+    const double peak = k < 1e-3 ? 1.0 + k + k * k / 3.0 : 2.0 * k / rest;
+    const double facing = k < 1e-3 ? 1.0 + 2.0 / 3.0 * k + k * k / 12.0 : 4.0 * (k + expm1(-k)) / (k * rest);
+    const double mean = 1.0 / (unit == SH_RADIANCE ? peak : facing);
+    float zonal[3];
+    sh_zonal_vmf(sharpness, zonal);
+    shi_set3((float)mean, (float)(mean * (double)zonal[1]), (float)(mean * (double)zonal[2]), zonal);
+    shi_add_zonal(order, channels, zonal, dir, value, c);
+}
+
+SHI_INLINE double shi_dot(const double a[3], const double b[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+SHI_INLINE void shi_cross(const double a[3], const double b[3], double out[3]) {
+    const double x = a[1] * b[2] - a[2] * b[1], y = a[2] * b[0] - a[0] * b[2], z = a[0] * b[1] - a[1] * b[0];
+    out[0] = x;
+    out[1] = y;
+    out[2] = z;
+}
+
+/* out = a + t b */
+SHI_INLINE void shi_along(const double a[3], double t, const double b[3], double out[3]) {
+    for (int i = 0; i < 3; i++)
+        out[i] = a[i] + t * b[i];
+}
+
+SHI_INLINE void shi_widen(const float a[3], double out[3]) {
+    for (int i = 0; i < 3; i++)
+        out[i] = (double)a[i];
+}
+
+/* Adds radiance times a light's moments of radiance 1, given as integrals over the sphere. */
+SHI_FUNCTION void shi_add_integral(int order, int channels, const double integral[9], const float *radiance, float *c) {
+    float lobe[9];
+    for (int i = 0; i < 9; i++)
+        lobe[i] = (float)(integral[i] / (4.0 * SHI_PI));
+    shi_add_lobe(order, channels, lobe, radiance, c);
+}
+
+/* integral = solid_angle * basis(p / |p|): a light too small to have a shape. */
+SHI_FUNCTION void shi_point_integral(const double p[3], double solid_angle, double integral[9]) {
+    const double square = shi_dot(p, p), inverse = square > 0.0 ? 1.0 / sqrt(square) : 0.0;
+    const double x = p[0] * inverse, y = p[1] * inverse, z = p[2] * inverse, third = square > 0.0 ? 1.0 / 3.0 : 0.0;
+    const double basis[9] = { 1.0, x, y, z, x * x - third, x * y, x * z, y * y - third, y * z };
+    for (int i = 0; i < 9; i++)
+        integral[i] = solid_angle * basis[i];
+}
+
+/* The part of R1 and R2 of a piece of a light's outline: f = integral of the inward normal along it, and of sym(inward u'). */
+SHI_INLINE void shi_outline_add(const double f[3], const double n[3], const double g[3], double integral[9]) {
+    for (int i = 0; i < 3; i++)
+        integral[SH_X + i] += f[i] / 2.0;
+    integral[SH_XX] += n[0] * g[0] / 3.0;
+    integral[SH_XY] += (n[0] * g[1] + n[1] * g[0]) / 6.0;
+    integral[SH_XZ] += (n[0] * g[2] + n[2] * g[0]) / 6.0;
+    integral[SH_YY] += n[1] * g[1] / 3.0;
+    integral[SH_YZ] += (n[1] * g[2] + n[2] * g[1]) / 6.0;
+}
+
+/* The great arc from a to b: its inward normal n is constant, f = angle n, g = integral of u. From differences of the vertices, so
+ * that a small light far away keeps its digits. */
+SHI_FUNCTION void shi_edge_add(const double a[3], const double b[3], double integral[9]) {
+    double edge[3], n[3], f[3], g[3], chord[3];
+    shi_along(b, -1.0, a, edge);
+    shi_cross(a, edge, n);
+    const double cross = sqrt(shi_dot(n, n)), dot = shi_dot(a, b), la = sqrt(shi_dot(a, a)), lb = sqrt(shi_dot(b, b));
+    if (!(cross > 0.0))
+        return;
+    const double angle = atan2(cross, dot), half_tangent = cross / (la * lb + dot);
+    for (int i = 0; i < 3; i++) {
+        n[i] /= cross;
+        f[i] = angle * n[i];
+        g[i] = (a[i] / la + b[i] / lb) * half_tangent;
+        chord[i] = a[i] / la - b[i] / lb;
+    }
+    if (dot < 0.0)
+        shi_cross(n, chord, g);
+    shi_outline_add(f, n, g, integral);
+}
+
+/* Signed solid angle of a triangle. */
+SHI_FUNCTION double shi_triangle_angle(const double a[3], const double b[3], const double c[3]) {
+    double ab[3], ac[3], normal[3];
+    shi_along(b, -1.0, a, ab);
+    shi_along(c, -1.0, a, ac);
+    shi_cross(ab, ac, normal);
+    const double la = sqrt(shi_dot(a, a)), lb = sqrt(shi_dot(b, b)), lc = sqrt(shi_dot(c, c));
+    const double rest = la * lb * lc + shi_dot(a, b) * lc + shi_dot(b, c) * la + shi_dot(c, a) * lb;
+    return 2.0 * atan2(shi_dot(a, normal), rest);
+}
+
+SHI_FUNCTION void shi_polygon_integral(const float *vertices, size_t count, double integral[9]) {
+    double first[3], last[3], middle[3] = { 0, 0, 0 }, solid_angle = 0.0, extent = 0.0;
+    memset(integral, 0, 9 * sizeof *integral);
+    shi_widen(vertices, first);
+    shi_widen(vertices + 3 * (count - 1), last);
+    for (size_t i = 0; i < count; i++) {
+        double p[3], from_first[3];
+        shi_widen(vertices + 3 * i, p);
+        shi_edge_add(last, p, integral);
+        if (i >= 2)
+            solid_angle += shi_triangle_angle(first, last, p);
+        shi_along(p, -1.0, first, from_first);
+        extent = fmax(extent, shi_dot(from_first, from_first));
+        shi_along(middle, 1.0 / (double)count, p, middle);
+        memcpy(last, p, sizeof last);
+    }
+    /* The sums over edges cancel to the square of the light's angular size; at 1e-8, half of a double's digits are left. */
+    if (extent < 1e-16 * shi_dot(first, first))
+        shi_point_integral(middle, solid_angle, integral);
+    integral[SH_R0] = solid_angle;
+    if (solid_angle < 0.0)
+        for (int i = 0; i < 9; i++)
+            integral[i] = -integral[i];
+}
+
+SHI_FUNCTION int sh_add_polygon(int order, int channels, const float *vertices, size_t count, const float *radiance, float *c) {
+    double integral[9];
+    if (!shi_order_ok(order) || channels < 1 || !vertices || count < 3 || !radiance || !c)
+        return SH_ERROR_ARGUMENT;
+    shi_polygon_integral(vertices, count, integral);
+    shi_add_integral(order, channels, integral, radiance, c);
+    return SH_OK;
+}
+
+SHI_FUNCTION void sh_add_rectangle(int order, int channels, const float center[3], const float half_u[3], const float half_v[3],
+                                   const float *radiance, float *c) {
+    float corner[4][3];
+    for (int i = 0; i < 3; i++) {
+        corner[0][i] = center[i] - half_u[i] - half_v[i];
+        corner[1][i] = center[i] + half_u[i] - half_v[i];
+        corner[2][i] = center[i] + half_u[i] + half_v[i];
+        corner[3][i] = center[i] - half_u[i] + half_v[i];
+    }
+    sh_add_polygon(order, channels, corner[0], 4, radiance, c);
+}
+
+/* Two unit vectors that make a right-handed frame with unit vector n. Duff et al., "Building an Orthonormal Basis, Revisited", 2017. */
+SHI_FUNCTION void shi_frame(const double n[3], double u[3], double v[3]) {
+    const double sign = n[2] < 0.0 ? -1.0 : 1.0, a = -1.0 / (sign + n[2]), b = n[0] * n[1] * a;
+    u[0] = 1.0 + sign * n[0] * n[0] * a;
+    u[1] = sign * b;
+    u[2] = -sign * n[0];
+    v[0] = b;
+    v[1] = sign + n[1] * n[1] * a;
+    v[2] = -n[1];
+}
+
+/* Points on the rim for an error of 1e-8. The integrand's nearest pole is at azimuth + i y, where |p|^2 = 0:
+ * cosh y - 1 = gap^2 / (2 radius * distance from the axis). */
+SHI_FUNCTION int shi_rim_points(const double center[3], const double axis[3], double radius) {
+    const double height = shi_dot(center, axis), off = sqrt(fmax(0.0, shi_dot(center, center) - height * height));
+    const double gap = (off - radius) * (off - radius) + height * height, span = 2.0 * radius * off;
+    const double t = gap < 100.0 * span ? gap / span : 100.0, y = log1p(t + sqrt(t * (t + 2.0)));
+    return y > 0.02 ? 16 + (int)(20.0 / y) : 1016;
+}
+
+/* Around the rim p of a disk: f = integral of u x du, R2 from (u x du) u', and the solid angle from axis.(u x du) / (1 + axis.u), whose
+ * denominator is at least 1 as the axis points away from the receiver. */
+SHI_FUNCTION void shi_disk_integral(const double center[3], const double axis[3], double radius, double integral[9]) {
+    const int points = shi_rim_points(center, axis, radius);
+    const double step = 2.0 * SHI_PI / points, cos_step = cos(step), sin_step = sin(step);
+    double u[3], v[3], cosine = 1.0, sine = 0.0;
+    shi_frame(axis, u, v);
+    memset(integral, 0, 9 * sizeof *integral);
+    for (int i = 0; i < points; i++) {
+        double p[3], slope[3], f[3], g[3];
+        for (int k = 0; k < 3; k++) {
+            p[k] = center[k] + radius * (cosine * u[k] + sine * v[k]);
+            slope[k] = radius * step * (cosine * v[k] - sine * u[k]);
+        }
+        shi_cross(p, slope, f);
+        const double square = shi_dot(p, p), inverse = square > 0.0 ? 1.0 / square : 0.0, length = sqrt(inverse);
+        for (int k = 0; k < 3; k++) {
+            f[k] *= inverse;
+            g[k] = p[k] * length;
+        }
+        integral[SH_R0] += shi_dot(axis, f) / (1.0 + shi_dot(axis, g));
+        shi_outline_add(f, f, g, integral);
+        const double next = cosine * cos_step - sine * sin_step;
+        sine = sine * cos_step + cosine * sin_step;
+        cosine = next;
+    }
+}
+
+SHI_FUNCTION void sh_add_disk(int order, int channels, const float center[3], const float normal[3], float radius, const float *radiance,
+                              float *c) {
+    double p[3], axis[3], integral[9];
+    const double r = (double)radius;
+    if (!(r > 0.0))
+        return;
+    shi_widen(center, p);
+    shi_widen(normal, axis);
+    if (shi_dot(p, axis) < 0.0)
+        for (int i = 0; i < 3; i++)
+            axis[i] = -axis[i];
+    const double square = shi_dot(p, p);
+    if (r * r < 1e-16 * square)
+        shi_point_integral(p, SHI_PI * r * r / square * shi_dot(p, axis) / sqrt(square), integral);
+    else
+        shi_disk_integral(p, axis, r, integral);
+    shi_add_integral(order, channels, integral, radiance, c);
+}
+
+/* At angle p from the foot of the perpendicular, the tube is width cos(p) / h wide: moments are integrals of products of cos and sin. */
+SHI_FUNCTION void sh_add_segment(int order, int channels, const float a[3], const float b[3], float width, const float *radiance,
+                                 float *c) {
+    double from[3], to[3], t[3], e[3], integral[9];
+    shi_widen(a, from);
+    shi_widen(b, to);
+    shi_along(to, -1.0, from, t);
+    const double length = sqrt(shi_dot(t, t));
+    if (!(length > 0.0))
+        return;
+    for (int i = 0; i < 3; i++)
+        t[i] /= length;
+    const double a0 = shi_dot(from, t), b0 = shi_dot(to, t);
+    if (fabs(a0) < fabs(b0)) /* the nearer end has the more accurate foot of the perpendicular */
+        shi_along(from, -a0, t, e);
+    else
+        shi_along(to, -b0, t, e);
+    const double h = sqrt(shi_dot(e, e)), la = sqrt(a0 * a0 + h * h), lb = sqrt(b0 * b0 + h * h);
+    if (!(h > 0.0 && width > 0.0f))
+        return;
+    for (int i = 0; i < 3; i++)
+        e[i] /= h;
+    const double s0 = a0 / la, s1 = b0 / lb, c0 = h / la, c1 = h / lb;
+    const double angle = atan2(s1, c1) - atan2(s0, c0), w = (double)width / fmax(h, 0.5 * (double)width);
+    const double cubes = (s1 * s1 * s1 - s0 * s0 * s0) / 3.0, one = s1 - s0;
+    const double ec = (angle + s1 * c1 - s0 * c0) / 2.0, tc = (s1 * s1 - s0 * s0) / 2.0;      /* of cos^2, of sin cos */
+    const double ee = one - cubes, et = (c0 * c0 * c0 - c1 * c1 * c1) / 3.0, tt = cubes;      /* of cos^3, cos^2 sin, cos sin^2 */
+    integral[SH_R0] = w * one;
+    for (int i = 0, at = SH_XX; i < 3; i++) {
+        integral[SH_X + i] = w * (ec * e[i] + tc * t[i]);
+        for (int j = i; j < 3 && at <= SH_YZ; j++, at++)
+            integral[at] = w * (ee * e[i] * e[j] + et * (e[i] * t[j] + t[i] * e[j]) + tt * t[i] * t[j] - (i == j ? one / 3.0 : 0.0));
+    }
+    shi_add_integral(order, channels, integral, radiance, c);
+}
+
+SHI_FUNCTION size_t sh_add_spheres(int order, int channels, const float *spheres, const float *radiance, size_t count, float tolerance,
+                                   float *c) {
+    double skipped = 0.0;
+    size_t added = 0;
+    for (size_t i = 0; i < count; i++, spheres += 4, radiance += channels) {
+        double p[3], most = 0.0;
+        shi_widen(spheres, p);
+        for (int k = 0; k < channels; k++)
+            most = fmax(most, fabs((double)radiance[k]));
+        const double square = shi_dot(p, p), rr = (double)spheres[3] * (double)spheres[3];
+        const double bound = rr < square ? 17.0 / 16.0 * most * rr / square : most;
+        if (bound * (double)(count - i) <= (double)tolerance - skipped) { /* its share of what is left, for it and all that follow */
+            skipped += bound;
+            continue;
+        }
+        sh_add_sphere(order, channels, spheres, spheres[3], SH_RADIANCE, radiance, c);
+        added++;
+    }
+    return added;
+}
+
+/* ---- Conversion and storage ----------------------------------------------------------------------------------------------------- */
+
+/* A set in the order 1; y, z, x; xy, yz, zz, xz, xx - yy: factors of R0, of R1, of the three products, of zz and of xx - yy; what odd m
+ * is multiplied by as well. */
+typedef struct shi_convention {
+    double f0, f1, f2, f20, f22, odd;
+} shi_convention;
+
+SHI_FUNCTION shi_convention shi_orthonormal(int phase) {
+    const double root_pi = 1.77245385090551602730; /* sqrt(pi) */
+    const shi_convention k = { 2.0 * root_pi,             sqrt(12.0) * root_pi, 2.0 * sqrt(15.0) * root_pi, 3.0 * sqrt(5.0) * root_pi,
+                               sqrt(15.0) * root_pi, phase == SH_CONDON_SHORTLEY ? -1.0 : 1.0 };
+    return k;
+}
+
+SHI_FUNCTION shi_convention shi_unity(void) {
+    const shi_convention k = { 1.0, 2.0, 15.0 / 4.0, 15.0 / 16.0, 15.0 / 16.0, 1.0 };
+    return k;
+}
+
+SHI_FUNCTION void shi_to_convention(int order, const float *c, const shi_convention *k, float *out) {
+    double wide[9] = { 0 };
+    for (int i = 0; i < SH_COUNT(order); i++)
+        wide[i] = (double)c[i];
+    out[0] = (float)(k->f0 * wide[SH_R0]);
+    if (order >= SH_L1) {
+        out[1] = (float)(k->odd * k->f1 * wide[SH_Y]);
+        out[2] = (float)(k->f1 * wide[SH_Z]);
+        out[3] = (float)(k->odd * k->f1 * wide[SH_X]);
+    }
+    if (order >= SH_L2) {
+        out[4] = (float)(k->f2 * wide[SH_XY]);
+        out[5] = (float)(k->odd * k->f2 * wide[SH_YZ]);
+        out[6] = (float)(k->f20 * -(wide[SH_XX] + wide[SH_YY]));
+        out[7] = (float)(k->odd * k->f2 * wide[SH_XZ]);
+        out[8] = (float)(k->f22 * (wide[SH_XX] - wide[SH_YY]));
+    }
+}
+
+SHI_FUNCTION void shi_from_convention(int order, const float *f, const shi_convention *k, float *out) {
+    double wide[9] = { 0 };
+    for (int i = 0; i < SH_COUNT(order); i++)
+        wide[i] = (double)f[i];
+    out[SH_R0] = (float)(wide[0] / k->f0);
+    if (order >= SH_L1) {
+        out[SH_X] = (float)(k->odd * wide[3] / k->f1);
+        out[SH_Y] = (float)(k->odd * wide[1] / k->f1);
+        out[SH_Z] = (float)(wide[2] / k->f1);
+    }
+    if (order >= SH_L2) {
+        const double zz = wide[6] / k->f20, difference = wide[8] / k->f22;
+        out[SH_XX] = (float)((difference - zz) / 2.0);
+        out[SH_XY] = (float)(wide[4] / k->f2);
+        out[SH_XZ] = (float)(k->odd * wide[7] / k->f2);
+        out[SH_YY] = (float)(-(difference + zz) / 2.0);
+        out[SH_YZ] = (float)(k->odd * wide[5] / k->f2);
+    }
+}
+
+SHI_FUNCTION void sh_to_orthonormal(int order, const float *c, int phase, float *out) {
+    const shi_convention k = shi_orthonormal(phase);
+    shi_to_convention(order, c, &k, out);
+}
+
+SHI_FUNCTION void sh_from_orthonormal(int order, const float *f, int phase, float *out) {
+    const shi_convention k = shi_orthonormal(phase);
+    shi_from_convention(order, f, &k, out);
+}
+
+SHI_FUNCTION void sh_to_unity(int order, const float *c, float *out) {
+    const shi_convention k = shi_unity();
+    shi_to_convention(order, c, &k, out);
+}
+
+SHI_FUNCTION void sh_from_unity(int order, const float *u, float *out) {
+    const shi_convention k = shi_unity();
+    shi_from_convention(order, u, &k, out);
+}
+
+/* R0 (x^2 + y^2 + z^2) + 2 R1.n + 15/8 n'R2 n */
+SHI_FUNCTION void sh_to_babylon(const float *c, float out[9]) {
+    const double r0 = (double)c[SH_R0], xx = (double)c[SH_XX], yy = (double)c[SH_YY], squares = 15.0 / 8.0;
+    const float yz = 3.75f * c[SH_YZ], zx = 3.75f * c[SH_XZ], xy = 3.75f * c[SH_XY];
+    shi_set3(2.0f * c[SH_X], 2.0f * c[SH_Y], 2.0f * c[SH_Z], out);
+    shi_set3((float)(r0 + squares * xx), (float)(r0 + squares * yy), (float)(r0 - squares * (xx + yy)), out + 3);
+    shi_set3(yz, zx, xy, out + 6);
+}
+
+SHI_FUNCTION void sh_from_babylon(const float p[9], float *out) {
+    const double xx = (double)p[3], yy = (double)p[4], zz = (double)p[5], r0 = (xx + yy + zz) / 3.0, squares = 8.0 / 15.0;
+    const float yz = p[6] / 3.75f, zx = p[7] / 3.75f, xy = p[8] / 3.75f;
+    shi_set3(0.5f * p[0], 0.5f * p[1], 0.5f * p[2], out + SH_X);
+    out[SH_R0] = (float)r0;
+    out[SH_XX] = (float)(squares * (xx - r0));
+    out[SH_XY] = xy;
+    out[SH_XZ] = zx;
+    out[SH_YY] = (float)(squares * (yy - r0));
+    out[SH_YZ] = yz;
+}
+
+SHI_FUNCTION void sh_interleave(int order, int channels, const float *c, float *out) {
+    for (int k = 0; k < channels; k++)
+        for (int i = 0; i < SH_COUNT(order); i++)
+            out[i * channels + k] = c[k * SH_COUNT(order) + i];
+}
+
+SHI_FUNCTION void sh_deinterleave(int order, int channels, const float *c, float *out) {
+    for (int k = 0; k < channels; k++)
+        for (int i = 0; i < SH_COUNT(order); i++)
+            out[k * SH_COUNT(order) + i] = c[i * channels + k];
+}
+
+SHI_FUNCTION void sh_pack_shader(const float *c, float out[28]) {
+    for (int k = 0; k < 3; k++, c += SH_COUNT(SH_L2)) {
+        const float *a = c, zz = -0.9375f * (a[SH_XX] + a[SH_YY]); /* 15/16 */
+        shi_set3(2.0f * a[SH_X], 2.0f * a[SH_Y], 2.0f * a[SH_Z], out + 4 * k);
+        out[4 * k + 3] = a[SH_R0] - zz;
+        shi_set3(3.75f * a[SH_XY], 3.75f * a[SH_YZ], 3.0f * zz, out + 12 + 4 * k);
+        out[15 + 4 * k] = 3.75f * a[SH_XZ];
+        out[24 + k] = 0.9375f * (a[SH_XX] - a[SH_YY]);
+    }
+    out[27] = 1.0f;
+}
+
+/* Whether symmetric m is positive definite: elimination without pivoting, which such a matrix does not need. */
+SHI_FUNCTION int shi_positive_definite(double m[4][4]) {
+    for (int k = 0; k < 4; k++) {
+        if (!(m[k][k] > 0.0))
+            return 0;
+        const double inverse = 1.0 / m[k][k];
+        for (int i = k + 1; i < 4; i++) {
+            const double factor = inverse * m[i][k];
+            for (int j = k + 1; j < 4; j++)
+                m[i][j] -= factor * m[k][j];
+        }
+    }
+    return 1;
+}
+
+/* Whether one channel has moments of a light that is not negative: |R1| <= R0 at L1; at L2, the moment matrix
+ * [[R0, R1'], [R1, R2 + I/3 R0]], with slack * R0 added to its diagonal, is positive definite. */
+SHI_FUNCTION int shi_realizable(int order, const float *c, double slack) {
+    const double r0 = (double)c[SH_R0], more = slack * r0;
+    if (!(r0 > 0.0) || order == SH_L0)
+        return r0 > 0.0;
+    const double x = (double)c[SH_X], y = (double)c[SH_Y], z = (double)c[SH_Z];
+    if (order == SH_L1)
+        return sqrt(x * x + y * y + z * z) <= r0 + more;
+    const double xx = (double)c[SH_XX], yy = (double)c[SH_YY], zz = -(xx + yy), third = r0 / 3.0 + more;
+    const double xy = (double)c[SH_XY], xz = (double)c[SH_XZ], yz = (double)c[SH_YZ];
+    double m[4][4] = { { r0 + more, x, y, z }, { x, xx + third, xy, xz }, { y, xy, yy + third, yz }, { z, xz, yz, zz + third } };
+    return shi_positive_definite(m);
+}
+
+/* What counts as realizable: before packing, to the rounding of floats; after, to that of the elimination. */
+#define SHI_SLACK_BEFORE 2e-6
+#define SHI_SLACK_AFTER 1e-9
+
+/* To the nearest half; |x| < 2^16. Rounds ties of normal halves to even. */
+SHI_FUNCTION uint16_t shi_to_half(float x) {
+    uint32_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    const uint32_t magnitude = bits & 0x7fffffffu, sign = bits >> 31 << 15;
+    if (magnitude < 0x38800000u) /* 2^-14 */
+        return (uint16_t)(sign | (uint32_t)(fabsf(x) * 16777216.0f + 0.5f));
+    return (uint16_t)(sign | (magnitude - 0x38000000u + 0xfffu + (magnitude >> 13 & 1u)) >> 13);
+}
+
+/* Finite halves only. */
+SHI_FUNCTION float shi_from_half(uint16_t h) {
+    const uint32_t magnitude = h & 0x7fffu, bits = (magnitude << 13) + 0x38000000u;
+    float x;
+    memcpy(&x, &bits, sizeof x);
+    if (magnitude < 0x0400u)
+        x = (float)magnitude / 16777216.0f;
+    return h & 0x8000u ? -x : x;
+}
+
+SHI_FUNCTION void shi_halves_to_floats(int count, const uint16_t *in, double scale, float *out) {
+    for (int i = 0; i < count; i++)
+        out[i] = (float)(scale * (double)shi_from_half(in[i]));
+}
+
+SHI_FUNCTION void sh_pack_half(int order, int channels, const float *c, uint16_t *out) {
+    const int count = SH_COUNT(order);
+    int exponent = 15;
+    float most = 0.0f;
+    for (int i = 0; i < channels * count; i++)
+        most = fabsf(c[i]) > most ? fabsf(c[i]) : most;
+    if (most > 0.0f)
+        frexpf(most, &exponent);
+    exponent -= 15;
+    const double scale = ldexp(1.0, -exponent);
+    for (int k = 0; k < channels; k++) {
+        uint16_t *half = out + k * count;
+        float decoded[9];
+        for (int i = 0; i < count; i++)
+            half[i] = shi_to_half((float)(scale * (double)c[k * count + i]));
+        shi_halves_to_floats(count, half, 1.0, decoded);
+        if (shi_realizable(order, decoded, SHI_SLACK_AFTER) || !shi_realizable(order, c + k * count, SHI_SLACK_BEFORE))
+            continue;
+        for (int step = 0; step < 8 && !shi_realizable(order, decoded, SHI_SLACK_AFTER); step++)
+            decoded[SH_R0] = shi_from_half(++half[SH_R0]);
+    }
+    out[channels * count] = (uint16_t)exponent;
+}
+
+SHI_FUNCTION void sh_unpack_half(int order, int channels, const uint16_t *in, float *out) {
+    const int count = channels * SH_COUNT(order), word = in[count];
+    shi_halves_to_floats(count, in, ldexp(1.0, word < 0x8000 ? word : word - 0x10000), out);
+}
+
+/* Ratios are coded as zero + scale * ratio, in [0, 2^bits - 1]. */
+typedef struct shi_ratio {
+    double zero, scale, least, most;
+} shi_ratio;
+
+SHI_FUNCTION shi_ratio shi_ratio_code(int i, int bits) {
+    const double top = (double)((1 << bits) - 1), middle = (double)(1 << (bits - 1));
+    const shi_ratio first = { middle, middle - 1.0, -1.0, 1.0 }, product = { middle, 2.0 * (middle - 1.0), -0.5, 0.5 };
+    const shi_ratio square = { top / 3.0, top, -1.0 / 3.0, 2.0 / 3.0 };
+    return i < SH_XX ? first : i == SH_XX || i == SH_YY ? square : product;
+}
+
+SHI_FUNCTION void shi_decode_ratios(int order, const uint16_t *code, int bits, float r0, float *out) {
+    out[SH_R0] = r0;
+    for (int i = SH_X; i < SH_COUNT(order); i++) {
+        const shi_ratio ratio = shi_ratio_code(i, bits);
+        out[i] = r0 > 0.0f ? (float)((double)r0 * ((code[i - 1] - ratio.zero) / ratio.scale)) : 0.0f;
+    }
+}
+
+SHI_FUNCTION void shi_encode_ratios(int order, const float *c, int bits, double shrink, uint16_t *code) {
+    const double inverse = c[SH_R0] > 0.0f ? shrink / (double)c[SH_R0] : 0.0;
+    for (int i = SH_X; i < SH_COUNT(order); i++) {
+        const shi_ratio ratio = shi_ratio_code(i, bits);
+        const double t = inverse * (double)c[i];
+        code[i - 1] = (uint16_t)(ratio.zero + ratio.scale * (!(t > ratio.least) ? ratio.least : t > ratio.most ? ratio.most : t) + 0.5);
+    }
+}
+
+/* Codes of one channel that decode to a realizable set if c is one. */
+SHI_FUNCTION void shi_pack_ratios(int order, const float *c, int bits, uint16_t *code) {
+    float decoded[9];
+    for (int step = 0; step < 64; step++) {
+        shi_encode_ratios(order, c, bits, 1.0 - step / (2.0 * (1 << bits)), code);
+        shi_decode_ratios(order, code, bits, 1.0f, decoded);
+        if (shi_realizable(order, decoded, SHI_SLACK_AFTER) || (step == 0 && !shi_realizable(order, c, SHI_SLACK_BEFORE)))
+            return;
+    }
+}
+
+SHI_FUNCTION void sh_pack_unorm8(int order, int channels, const float *c, float *r0, uint8_t *ratio) {
+    const int count = SH_COUNT(order) - 1;
+    for (int k = 0; k < channels; k++) {
+        uint16_t code[8];
+        r0[k] = c[k * SH_COUNT(order)];
+        shi_pack_ratios(order, c + k * SH_COUNT(order), 8, code);
+        for (int i = 0; i < count; i++)
+            ratio[k * count + i] = (uint8_t)code[i];
+    }
+}
+
+SHI_FUNCTION void sh_unpack_unorm8(int order, int channels, const float *r0, const uint8_t *ratio, float *out) {
+    const int count = SH_COUNT(order) - 1;
+    for (int k = 0; k < channels; k++) {
+        uint16_t code[8];
+        for (int i = 0; i < count; i++)
+            code[i] = ratio[k * count + i];
+        shi_decode_ratios(order, code, 8, r0[k], out + k * SH_COUNT(order));
+    }
+}
+
+SHI_FUNCTION void sh_pack_unorm10(int order, int channels, const float *c, float *r0, uint32_t *ratio) {
+    const int words = (SH_COUNT(order) + 1) / 3;
+    for (int k = 0; k < channels; k++) {
+        uint16_t code[9] = { 0 };
+        r0[k] = c[k * SH_COUNT(order)];
+        shi_pack_ratios(order, c + k * SH_COUNT(order), 10, code);
+        for (int i = 0; i < words; i++)
+            ratio[k * words + i] = code[3 * i] | (uint32_t)code[3 * i + 1] << 10 | (uint32_t)code[3 * i + 2] << 20;
+    }
+}
+
+SHI_FUNCTION void sh_unpack_unorm10(int order, int channels, const float *r0, const uint32_t *ratio, float *out) {
+    const int words = (SH_COUNT(order) + 1) / 3;
+    for (int k = 0; k < channels; k++) {
+        uint16_t code[9];
+        for (int i = 0; i < 3 * words; i++)
+            code[i] = (uint16_t)(ratio[k * words + i / 3] >> (10 * (i % 3)) & 0x3ffu);
+        shi_decode_ratios(order, code, 10, r0[k], out + k * SH_COUNT(order));
+    }
+}
+
+/* ---- Fitting --------------------------------------------------------------------------------------------------------------------
+ * The unknowns are coefficients of functions whose mean square over the sphere is 1: orthonormal harmonics times sqrt(4 pi). */
+
+SHI_FUNCTION int shi_band(int i) {
+    return i < 1 ? 0 : i < 4 ? 1 : 2;
+}
+
+/* 1; sqrt3 (y, z, x); sqrt15 (xy, yz), sqrt5/2 (3z^2 - 1), sqrt15 xz, sqrt15/2 (x^2 - y^2), each times the kernel of its band. */
+SHI_FUNCTION void shi_fit_row(const double dir[3], const float *zonal, double row[9]) {
+    const double x = dir[0], y = dir[1], z = dir[2], r3 = sqrt(3.0), r15 = sqrt(15.0);
+    const double value[9] = { 1.0, r3 * y, r3 * z, r3 * x, r15 * x * y, r15 * y * z, sqrt(1.25) * (3.0 * z * z - 1.0), r15 * x * z,
+                              r15 / 2.0 * (x * x - y * y) };
+    for (int i = 0; i < 9; i++)
+        row[i] = value[i] * (zonal ? (double)zonal[shi_band(i)] : 1.0);
+}
+
+/* The lower Cholesky factor of m in place; 0 at a pivot that is not above `least`. */
+SHI_FUNCTION int shi_cholesky(double m[9][9], int size, double least) {
+    for (int k = 0; k < size; k++) {
+        for (int j = 0; j < k; j++)
+            m[k][k] -= m[k][j] * m[k][j];
+        if (!(m[k][k] > least))
+            return 0;
+        m[k][k] = sqrt(m[k][k]);
+        for (int i = k + 1; i < size; i++) {
+            for (int j = 0; j < k; j++)
+                m[i][k] -= m[i][j] * m[k][j];
+            m[i][k] /= m[k][k];
+        }
+    }
+    return 1;
+}
+
+SHI_FUNCTION void shi_cholesky_solve(double m[9][9], int size, double v[9]) {
+    for (int i = 0; i < size; i++) {
+        for (int j = 0; j < i; j++)
+            v[i] -= m[i][j] * v[j];
+        v[i] /= m[i][i];
+    }
+    for (int i = size - 1; i >= 0; i--) {
+        for (int j = i + 1; j < size; j++)
+            v[i] -= m[j][i] * v[j];
+        v[i] /= m[i][i];
+    }
+}
+
+/* What is fitted. */
+typedef struct shi_fit {
+    const float *x, *y, *z, *weight, *zonal;
+    size_t count;
+} shi_fit;
+
+/* The weight of sample i, and its row. */
+SHI_FUNCTION double shi_fit_sample(const shi_fit *fit, size_t i, double row[9]) {
+    const double dir[3] = { (double)fit->x[i], (double)fit->y[i], (double)fit->z[i] };
+    shi_fit_row(dir, fit->zonal, row);
+    return fit->weight ? (double)fit->weight[i] : 1.0;
+}
+
+/* The weighted mean of the rows' outer products, plus lambda l^2 (l + 1)^2 and `ridge` on the diagonal; returns the sum of weights. */
+SHI_FUNCTION double shi_fit_matrix(const shi_fit *fit, double lambda, double ridge, double m[9][9]) {
+    double total = 0.0, row[9];
+    memset(m, 0, 81 * sizeof(double));
+    for (size_t i = 0; i < fit->count; i++) {
+        const double w = shi_fit_sample(fit, i, row);
+        total += w;
+        for (int j = 0; j < 9; j++)
+            for (int k = 0; k <= j; k++)
+                m[j][k] += w * row[j] * row[k];
+    }
+    for (int j = 0; j < 9; j++) {
+        const double l = shi_band(j);
+        for (int k = 0; k <= j; k++)
+            m[j][k] /= total;
+        m[j][j] += lambda * l * l * (l + 1.0) * (l + 1.0) + ridge;
+    }
+    return total;
+}
+
+SHI_FUNCTION void shi_fit_channel(const shi_fit *fit, int order, const float *value, double total, double m[9][9], float *c) {
+    /* From functions of mean square 1 to moments. */
+    const shi_convention k = { 1.0, sqrt(3.0), sqrt(15.0), 1.5 * sqrt(5.0), sqrt(3.75), 1.0 };
+    double right[9] = { 0 }, row[9];
+    float solution[9];
+    for (size_t i = 0; i < fit->count; i++) {
+        const double w = shi_fit_sample(fit, i, row) / total * (double)value[i];
+        for (int j = 0; j < 9; j++)
+            right[j] += w * row[j];
+    }
+    shi_cholesky_solve(m, SH_COUNT(order), right);
+    for (int j = 0; j < 9; j++)
+        solution[j] = (float)right[j];
+    shi_from_convention(order, solution, &k, c);
+}
+
+SHI_FUNCTION int sh_fit_samples(int order, int channels, const float *x, const float *y, const float *z, const float *value,
+                                const float *weight, size_t count, const float *zonal, float regularization, float *c) {
+    const double least = 1e-6, lambda = (double)regularization;
+    const shi_fit fit = { x, y, z, weight, zonal, count };
+    double m[9][9];
+    int status = SH_OK;
+    if (!shi_order_ok(order) || channels < 1 || !x || !y || !z || !value || !c || !(regularization >= 0.0f))
+        return SH_ERROR_ARGUMENT;
+    double total = shi_fit_matrix(&fit, lambda, 0.0, m);
+    if (!(total > 0.0 && total < 1e300))
+        return SH_ERROR_ARGUMENT;
+    if (!shi_cholesky(m, SH_COUNT(order), least)) {
+        status = SH_WARNING_UNDETERMINED;
+        total = shi_fit_matrix(&fit, lambda, least, m);
+        if (!shi_cholesky(m, SH_COUNT(order), 0.0))
+            return SH_ERROR_ARGUMENT;
+    }
+    for (int k = 0; k < channels; k++)
+        shi_fit_channel(&fit, order, value + (size_t)k * count, total, m, c + k * SH_COUNT(order));
+    return status;
 }
 
 #ifndef SH_NO_BATCH
@@ -1555,6 +2635,204 @@ SHI_INLINE int sh_project_samples(int order, int channels, const float *x, const
     }
     return SH_OK;
 }
+
+/* ---- Batches of operators ------------------------------------------------------------------------------------------------------- */
+
+enum {
+    SHI_ROTATED = 8, /* coefficients that turn: x, y, z, xx, xy, xz, yy, yz */
+    SHI_ROTATE_VECTORS = (SHI_ROTATED + SHI_LANES - 1) / SHI_LANES
+};
+
+/* Column j of the matrix that turns the eight coefficients, as vectors over its rows; all of one vector lie together. */
+typedef struct shi_rotation {
+    shi_v column[SHI_ROTATE_VECTORS][SHI_ROTATED];
+} shi_rotation;
+
+/* Rows 3 to 7 of a column are products of entries of two rows i, j of m: (0, 0), (0, 1), (0, 2), (1, 1), (1, 2). They are spread over
+ * the lanes by multiplication with 0 and 1, which is exact and takes no shuffles. */
+SHI_INLINE void shi_rotation_vector(const float m[9], int first, shi_v column[SHI_ROTATED]) {
+    static const float is_i[2][16] = { { 0, 0, 0, 1, 1, 1 }, { 0, 0, 0, 0, 0, 0, 1, 1 } };
+    static const float is_j[3][16] = { { 1, 0, 0, 1 }, { 0, 1, 0, 0, 1, 0, 1 }, { 0, 0, 1, 0, 0, 1, 0, 1 } };
+    static const float is_first_band[16] = { 1, 1, 1 };
+    const shi_v i0 = shi_load(is_i[0] + first), i1 = shi_load(is_i[1] + first), band = shi_load(is_first_band + first);
+    const shi_v j0 = shi_load(is_j[0] + first), j1 = shi_load(is_j[1] + first), j2 = shi_load(is_j[2] + first);
+    shi_v i[3], j[3];
+    for (int k = 0; k < 3; k++) {
+        i[k] = shi_madd(i0, shi_splat(m[k]), shi_mul(i1, shi_splat(m[3 + k])));
+        j[k] = shi_madd(j0, shi_splat(m[k]), shi_madd(j1, shi_splat(m[3 + k]), shi_mul(j2, shi_splat(m[6 + k]))));
+        column[k] = shi_mul(band, j[k]);
+    }
+    const shi_v zz = shi_mul(i[2], j[2]);
+    column[3] = shi_sub(shi_mul(i[0], j[0]), zz);
+    column[4] = shi_madd(i[0], j[1], shi_mul(i[1], j[0]));
+    column[5] = shi_madd(i[0], j[2], shi_mul(i[2], j[0]));
+    column[6] = shi_sub(shi_mul(i[1], j[1]), zz);
+    column[7] = shi_madd(i[1], j[2], shi_mul(i[2], j[1]));
+}
+
+/* c: x of a set. Two chains of additions, so that sets overlap better. */
+SHI_INLINE shi_v shi_rotate_vector(const shi_v column[SHI_ROTATED], const float *c) {
+    shi_v a = shi_mul(column[0], shi_splat(c[0])), b = shi_mul(column[4], shi_splat(c[4]));
+    a = shi_madd(column[1], shi_splat(c[1]), a);
+    b = shi_madd(column[5], shi_splat(c[5]), b);
+    a = shi_madd(column[2], shi_splat(c[2]), a);
+    b = shi_madd(column[6], shi_splat(c[6]), b);
+    a = shi_madd(column[3], shi_splat(c[3]), a);
+    b = shi_madd(column[7], shi_splat(c[7]), b);
+    return shi_add(a, b);
+}
+
+SHI_INLINE void shi_rotate_sets(const float *c, const float m[9], float *out, size_t sets) {
+    shi_rotation rotation;
+    for (int v = 0; v < SHI_ROTATE_VECTORS; v++)
+        shi_rotation_vector(m, v * SHI_LANES, rotation.column[v]);
+    for (size_t s = 0; s < sets; s++, c += SH_COUNT(SH_L2), out += SH_COUNT(SH_L2)) {
+        shi_v turned[SHI_ROTATE_VECTORS];
+        for (int v = 0; v < SHI_ROTATE_VECTORS; v++)
+            turned[v] = shi_rotate_vector(rotation.column[v], c + SH_X);
+        out[SH_R0] = c[SH_R0];
+        memcpy(out + SH_X, turned, SHI_ROTATED * sizeof(float));
+    }
+}
+
+SHI_FUNCTION void sh_rotate_batch(int order, const float *c, const float m[9], float *out, size_t sets) {
+    if (SHI_LANES > 1 && order == SH_L2) {
+        shi_rotate_sets(c, m, out, sets);
+        return;
+    }
+    for (size_t s = 0; s < sets; s++) {
+        const size_t at = s * (size_t)SH_COUNT(order);
+        sh_rotate(order, c + at, m, out + at);
+    }
+}
+
+/* A v + sum, for a row p, q, r of a matrix. */
+SHI_INLINE shi_v shi_madd_row(shi_v p, shi_v q, shi_v r, shi_v x, shi_v y, shi_v z, shi_v sum) {
+    return shi_madd(p, x, shi_madd(q, y, shi_madd(r, z, sum)));
+}
+
+/* An entry off the diagonal: first is of a1 b1' + b1 a1', second of AB + BA. */
+SHI_INLINE shi_v shi_product_rest(shi_v a0, shi_v b0, shi_v a, shi_v b, shi_v first, shi_v second) {
+    const shi_v sum = shi_madd(shi_splat(0.6f), first, shi_mul(shi_splat(15.0f / 7.0f), second));
+    return shi_madd(a0, b, shi_madd(b0, a, sum));
+}
+
+/* sh_product of SHI_LANES pairs whose planes are `stride` floats apart. Named vectors, not arrays, and stores last: compilers keep them
+ * in registers, and out may be a or b. */
+SHI_INLINE void shi_product_block(int order, const float *a, const float *b, float *out, size_t stride) {
+    const shi_v three = shi_splat(3.0f), zero = shi_splat(0.0f);
+    const shi_v a0 = shi_load(a), b0 = shi_load(b);
+    if (order < SH_L1) {
+        shi_store(out, shi_mul(a0, b0));
+        return;
+    }
+    const shi_v ax = shi_load(a + SH_X * stride), ay = shi_load(a + SH_Y * stride), az = shi_load(a + SH_Z * stride);
+    const shi_v bx = shi_load(b + SH_X * stride), by = shi_load(b + SH_Y * stride), bz = shi_load(b + SH_Z * stride);
+    const shi_v x = shi_mul(ax, bx), y = shi_mul(ay, by), z = shi_mul(az, bz), dot = shi_add(shi_add(x, y), z);
+    const shi_v p0 = shi_madd(three, dot, shi_mul(a0, b0));
+    const shi_v px = shi_madd(a0, bx, shi_mul(b0, ax)), py = shi_madd(a0, by, shi_mul(b0, ay)), pz = shi_madd(a0, bz, shi_mul(b0, az));
+    if (order < SH_L2) {
+        shi_store(out, p0);
+        shi_store(out + SH_X * stride, px);
+        shi_store(out + SH_Y * stride, py);
+        shi_store(out + SH_Z * stride, pz);
+        return;
+    }
+    const shi_v axx = shi_load(a + SH_XX * stride), axy = shi_load(a + SH_XY * stride), axz = shi_load(a + SH_XZ * stride);
+    const shi_v ayy = shi_load(a + SH_YY * stride), ayz = shi_load(a + SH_YZ * stride);
+    const shi_v bxx = shi_load(b + SH_XX * stride), bxy = shi_load(b + SH_XY * stride), bxz = shi_load(b + SH_XZ * stride);
+    const shi_v byy = shi_load(b + SH_YY * stride), byz = shi_load(b + SH_YZ * stride);
+    const shi_v minus_azz = shi_add(axx, ayy), minus_bzz = shi_add(bxx, byy);
+    const shi_v azz = shi_sub(zero, minus_azz), bzz = shi_sub(zero, minus_bzz);
+
+    const shi_v vx = shi_madd_row(axx, axy, axz, bx, by, bz, shi_madd_row(bxx, bxy, bxz, ax, ay, az, zero));
+    const shi_v vy = shi_madd_row(axy, ayy, ayz, bx, by, bz, shi_madd_row(bxy, byy, byz, ax, ay, az, zero));
+    const shi_v vz = shi_madd_row(axz, ayz, azz, bx, by, bz, shi_madd_row(bxz, byz, bzz, ax, ay, az, zero));
+    const shi_v rx = shi_madd(three, vx, px), ry = shi_madd(three, vy, py), rz = shi_madd(three, vz, pz);
+
+    const shi_v sxy = shi_madd(axz, byz, shi_madd(ayz, bxz, shi_madd(axy, minus_bzz, shi_mul(bxy, minus_azz))));
+    const shi_v sxz = shi_sub(shi_madd(axy, byz, shi_mul(ayz, bxy)), shi_madd(axz, byy, shi_mul(bxz, ayy)));
+    const shi_v syz = shi_sub(shi_madd(axy, bxz, shi_mul(axz, bxy)), shi_madd(ayz, bxx, shi_mul(byz, axx)));
+    const shi_v rxy = shi_product_rest(a0, b0, axy, bxy, shi_madd(ax, by, shi_mul(ay, bx)), sxy);
+    const shi_v rxz = shi_product_rest(a0, b0, axz, bxz, shi_madd(ax, bz, shi_mul(az, bx)), sxz);
+    const shi_v ryz = shi_product_rest(a0, b0, ayz, byz, shi_madd(ay, bz, shi_mul(az, by)), syz);
+
+    const shi_v xy = shi_mul(axy, bxy), xz = shi_mul(axz, bxz), yz = shi_mul(ayz, byz);
+    const shi_v sxx = shi_madd(axx, bxx, shi_add(xy, xz)), syy = shi_madd(ayy, byy, shi_add(xy, yz));
+    const shi_v szz = shi_madd(azz, bzz, shi_add(xz, yz)), trace = shi_add(shi_add(sxx, syy), szz);
+    const shi_v isotropic = shi_madd(shi_splat(-0.4f), dot, shi_mul(shi_splat(-10.0f / 7.0f), trace));
+    const shi_v dxx = shi_madd(shi_splat(1.2f), x, shi_madd(shi_splat(30.0f / 7.0f), sxx, isotropic));
+    const shi_v dyy = shi_madd(shi_splat(1.2f), y, shi_madd(shi_splat(30.0f / 7.0f), syy, isotropic));
+    shi_store(out, shi_madd(shi_splat(7.5f), trace, p0));
+    shi_store(out + SH_X * stride, rx);
+    shi_store(out + SH_Y * stride, ry);
+    shi_store(out + SH_Z * stride, rz);
+    shi_store(out + SH_XX * stride, shi_madd(a0, bxx, shi_madd(b0, axx, dxx)));
+    shi_store(out + SH_XY * stride, rxy);
+    shi_store(out + SH_XZ * stride, rxz);
+    shi_store(out + SH_YY * stride, shi_madd(a0, byy, shi_madd(b0, ayy, dyy)));
+    shi_store(out + SH_YZ * stride, ryz);
+}
+
+SHI_INLINE void shi_product_planes(int order, const float *a, const float *b, float *out, size_t count) {
+    size_t p = 0;
+    for (; p + SHI_LANES <= count; p += SHI_LANES)
+        shi_product_block(order, a + p, b + p, out + p, count);
+    if (p == count)
+        return;
+    float padded[2][SH_COUNT(SH_L2) * SHI_LANES] = { { 0 } };
+    for (int i = 0; i < SH_COUNT(order); i++) {
+        memcpy(padded[0] + i * SHI_LANES, a + (size_t)i * count + p, (count - p) * sizeof(float));
+        memcpy(padded[1] + i * SHI_LANES, b + (size_t)i * count + p, (count - p) * sizeof(float));
+    }
+    shi_product_block(order, padded[0], padded[1], padded[0], SHI_LANES);
+    for (int i = 0; i < SH_COUNT(order); i++)
+        memcpy(out + (size_t)i * count + p, padded[0] + i * SHI_LANES, (count - p) * sizeof(float));
+}
+
+SHI_FUNCTION void sh_product_batch(int order, const float *a, const float *b, float *out, size_t count) {
+    switch (order) {
+    case SH_L0: shi_product_planes(SH_L0, a, b, out, count); break;
+    case SH_L1: shi_product_planes(SH_L1, a, b, out, count); break;
+    default: shi_product_planes(SH_L2, a, b, out, count); break;
+    }
+}
+
+#if SHI_LANES > 1 && SHI_LANES <= 8
+/* The basis but its 1, as products p q - r, whose factors are spread over the lanes as in shi_rotation_vector. */
+SHI_INLINE shi_v shi_basis_vector(const float dir[3], int first) {
+    static const float p_is[3][8] = { { 1, 0, 0, 1, 1, 1 }, { 0, 1, 0, 0, 0, 0, 1, 1 }, { 0, 0, 1 } };
+    static const float q_is[4][8] = { { 1, 1, 1 }, { 0, 0, 0, 1 }, { 0, 0, 0, 0, 1, 0, 1 }, { 0, 0, 0, 0, 0, 1, 0, 1 } };
+    static const float minus_r[8] = { 0, 0, 0, -1.0f / 3.0f, 0, 0, -1.0f / 3.0f };
+    const shi_v x = shi_splat(dir[0]), y = shi_splat(dir[1]), z = shi_splat(dir[2]);
+    const shi_v p = shi_madd(shi_load(p_is[0] + first), x, shi_madd(shi_load(p_is[1] + first), y, shi_mul(shi_load(p_is[2] + first), z)));
+    const shi_v q = shi_madd(shi_load(q_is[1] + first), x, shi_madd(shi_load(q_is[2] + first), y,
+                             shi_madd(shi_load(q_is[3] + first), z, shi_load(q_is[0] + first))));
+    return shi_madd(p, q, shi_load(minus_r + first));
+}
+
+SHI_INLINE void shi_add_zonal(int order, int channels, const float zonal[3], const float dir[3], const float *value, float *c) {
+    static const float is_first[8] = { 1, 1, 1 }, is_second[8] = { 0, 0, 0, 1, 1, 1, 1, 1 };
+    if (order < SH_L2) {
+        shi_add_zonal_scalar(order, channels, zonal, dir, value, c);
+        return;
+    }
+    for (int k = 0; k < channels; k++)
+        c[k * SH_COUNT(SH_L2)] += value[k] * zonal[0];
+    for (int first = 0; first < SHI_ROTATED; first += SHI_LANES) {
+        const shi_v k1 = shi_splat(zonal[1]), k2 = shi_splat(zonal[2]);
+        const shi_v factor = shi_madd(shi_load(is_first + first), k1, shi_mul(shi_load(is_second + first), k2));
+        const shi_v lobe = shi_mul(factor, shi_basis_vector(dir, first));
+        float *at = c + SH_X + first;
+        for (int k = 0; k < channels; k++, at += SH_COUNT(SH_L2))
+            shi_store(at, shi_madd(shi_splat(value[k]), lobe, shi_load(at)));
+    }
+}
+#else
+SHI_INLINE void shi_add_zonal(int order, int channels, const float zonal[3], const float dir[3], const float *value, float *c) {
+    shi_add_zonal_scalar(order, channels, zonal, dir, value, c);
+}
+#endif
 
 /* ---- Images ---------------------------------------------------------------------------------------------------------------------
  * Rows are read in blocks of up to SHI_BLOCK pixels: in place where they are clean floats, decoded to floats otherwise, padded with
