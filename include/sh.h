@@ -284,15 +284,6 @@ SHI_FUNCTION void sh_accum_finish(int order, int channels, const sh_accum *accum
 /* Coefficients as the sum itself: what was not added is black. For image rows, whose weights are fractions of the sphere. */
 SHI_FUNCTION void sh_accum_total(int order, int channels, const sh_accum *accum, float *c);
 
-/* c = weighted mean of value * basis over `count` directions x[i], y[i], z[i]. value is planar: channel k is value[k * count + i].
- * weight NULL: all equal. The sums are in double: no stagnation, relative error 1e-7. */
-SHI_FUNCTION int sh_project_samples(int order, int channels, const float *x, const float *y, const float *z, const float *value,
-                                    const float *weight, size_t count, float *c);
-
-/* The same sums added to accum[channels], to go on with later or elsewhere. */
-SHI_FUNCTION int sh_accum_samples(int order, int channels, const float *x, const float *y, const float *z, const float *value,
-                                  const float *weight, size_t count, sh_accum *accum);
-
 /* Projects a function by Gauss-Legendre x uniform quadrature: exact, to rounding, if f is a polynomial of at most `degree` in
  * (x, y, z), 0 <= degree <= 1000. Calls f about (degree + order)^2 / 2 times. channels <= SH_MAX_CHANNELS. */
 SHI_FUNCTION int sh_project_function(int order, int channels, sh_function f, void *user, int degree, float *c);
@@ -309,6 +300,38 @@ SHI_FUNCTION void sh_direction_sequence(uint32_t i, uint32_t seed, float dir[3])
 SHI_FUNCTION void sh_direction_fibonacci(uint32_t i, uint32_t count, float dir[3]);
 
 #ifndef SH_NO_BATCH
+/* ---- Batches: many directions at once -------------------------------------------------------------------------------------------
+ * Any order, number of channels, count (0 too) and alignment. A result does not depend on its position or on count. Rounding error
+ * <= 8 ulp of the sum of absolute terms. out may be an input array. */
+
+/* sh_radiance and sh_irradiance of `channels` planar sets c in directions x[i], y[i], z[i]. out is planar: channel k of direction i
+ * is out[k * count + i]. */
+SHI_INLINE void sh_radiance_batch(int order, int channels, const float *c, const float *x, const float *y, const float *z, float *out,
+                                  size_t count);
+SHI_INLINE void sh_irradiance_batch(int order, int channels, const float *c, const float *x, const float *y, const float *z,
+                                    float *out, size_t count);
+
+/* The same for interleaved data, such as a vertex buffer: direction i is the three floats at (char *)dir + i * dir_stride, its
+ * result the `channels` floats at (char *)out + i * out_stride. Strides in bytes; 0: tight. Nothing between items is written. */
+SHI_INLINE void sh_radiance_batch_aos(int order, int channels, const float *c, const float *dir, size_t dir_stride, float *out,
+                                      size_t out_stride, size_t count);
+SHI_INLINE void sh_irradiance_batch_aos(int order, int channels, const float *c, const float *n, size_t n_stride, float *out,
+                                        size_t out_stride, size_t count);
+
+/* sh_irradiance of one probe and one normal per item: item i has the `channels` planar sets at c + i * channels * SH_COUNT(order),
+ * as one probe after the other lies in a grid. out is planar; it may be x, y or z. */
+SHI_INLINE void sh_irradiance_probes_batch(int order, int channels, const float *c, const float *x, const float *y, const float *z,
+                                           float *out, size_t count);
+
+/* c = weighted mean of value * basis over `count` directions x[i], y[i], z[i]. value is planar: channel k is value[k * count + i].
+ * weight NULL: all equal. The sums are in double: no stagnation, relative error 1e-7. */
+SHI_INLINE int sh_project_samples(int order, int channels, const float *x, const float *y, const float *z, const float *value,
+                                    const float *weight, size_t count, float *c);
+
+/* The same sums added to accum[channels], to go on with later or elsewhere. */
+SHI_INLINE int sh_accum_samples(int order, int channels, const float *x, const float *y, const float *z, const float *value,
+                                  const float *weight, size_t count, sh_accum *accum);
+
 /* ---- Images --------------------------------------------------------------------------------------------------------------------- */
 
 typedef enum sh_format {
@@ -1236,42 +1259,6 @@ SHI_INLINE int shi_order_ok(int order) {
     return order >= SH_L0 && order <= SH_L2;
 }
 
-SHI_INLINE int shi_samples_ok(int order, int channels, const float *x, const float *y, const float *z, const float *value,
-                              size_t count) {
-    return shi_order_ok(order) && channels > 0 && (count == 0 || (x && y && z && value));
-}
-
-/* One channel's `count` samples added to an accumulator. */
-SHI_INLINE void shi_accum_channel(int order, const float *x, const float *y, const float *z, const float *value, const float *weight,
-                                  size_t count, sh_accum *accum) {
-    for (size_t i = 0; i < count; i++) {
-        const float dir[3] = { x[i], y[i], z[i] };
-        sh_accum_sample(order, dir, value[i], weight ? weight[i] : 1.0f, accum);
-    }
-}
-
-SHI_FUNCTION int sh_accum_samples(int order, int channels, const float *x, const float *y, const float *z, const float *value,
-                                  const float *weight, size_t count, sh_accum *accum) {
-    if (!shi_samples_ok(order, channels, x, y, z, value, count) || !accum)
-        return SH_ERROR_ARGUMENT;
-    for (int k = 0; k < channels; k++)
-        shi_accum_channel(order, x, y, z, value + (size_t)k * count, weight, count, accum + k);
-    return SH_OK;
-}
-
-SHI_FUNCTION int sh_project_samples(int order, int channels, const float *x, const float *y, const float *z, const float *value,
-                                    const float *weight, size_t count, float *c) {
-    if (!shi_samples_ok(order, channels, x, y, z, value, count) || !c)
-        return SH_ERROR_ARGUMENT;
-    for (int k = 0; k < channels; k++) {
-        sh_accum accum;
-        sh_accum_clear(1, &accum);
-        shi_accum_channel(order, x, y, z, value + (size_t)k * count, weight, count, &accum);
-        sh_accum_finish(order, 1, &accum, c + k * SH_COUNT(order));
-    }
-    return SH_OK;
-}
-
 /* Node i of n of Gauss-Legendre quadrature on [-1, 1], descending, by Newton's method on P_n; returns its weight (they sum to 2). */
 SHI_FUNCTION double shi_gauss_legendre(int i, int n, double *node) {
     double x = cos(SHI_PI * (i + 0.75) / (n + 0.5)), slope = 1.0;
@@ -1350,7 +1337,13 @@ SHI_FUNCTION void sh_direction_fibonacci(uint32_t i, uint32_t count, float dir[3
 #ifndef SH_NO_BATCH
 /* ---- Vector vocabulary: the only place with intrinsics --------------------------------------------------------------------------
  * A kernel below is written once, on these operations; scalar is the backend of one lane. shi_v is a vector of SHI_LANES floats,
- * shi_m a mask of as many, shi_i of as many 32-bit integers. Loads and stores take any alignment. Only shi_madd may fuse. */
+ * shi_m a mask of as many, shi_i of as many 32-bit integers. Loads and stores take any alignment. Only shi_madd may fuse.
+ *   min, max     the second operand where one is NaN
+ *   select       (m, a, b): a where m is set, b elsewhere
+ *   iload16      16-bit words, zero-extended;  iload32  native 32-bit words
+ *   transpose4   4 x 4 transposes within each group of four lanes
+ *   load4        four consecutive floats of each of SHI_LANES items, `stride` bytes apart: v[j] has float j of all items
+ *   store4       the first n of v[0] ... v[3] to n consecutive floats of each item, writing nothing else */
 
 #if defined(SH_NO_SIMD)
 #undef SH_SIMD
@@ -1399,11 +1392,38 @@ SHI_FUNCTION void sh_direction_fibonacci(uint32_t i, uint32_t count, float dir[3
 #endif
 #endif
 
+#if SH_SIMD == SH_SIMD_AVX512 || SH_SIMD == SH_SIMD_AVX2 || SH_SIMD == SH_SIMD_SSE2
+#if SH_SIMD == SH_SIMD_SSE2
+#include <emmintrin.h>
+#elif defined(__GNUC__) && !defined(__clang__)
+/* GCC takes the undefined operands inside its own AVX-512 functions for uninitialised variables (its bug 105593). */
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#pragma GCC diagnostic ignored "-Wuninitialized"
+#include <immintrin.h>
+#pragma GCC diagnostic pop
+#else
+#include <immintrin.h>
+#endif
+SHI_INLINE __m128 shi_load_four(const void *p) { return _mm_loadu_ps((const float *)p); }
+/* The first n <= 4 floats of a. */
+SHI_INLINE void shi_store_four(void *p, int n, __m128 a) {
+    float *q = (float *)p;
+    if (n == 4)
+        _mm_storeu_ps(q, a);
+    else if (n >= 2)
+        _mm_storel_pi((__m64 *)p, a);
+    if (n == 3)
+        _mm_store_ss(q + 2, _mm_movehl_ps(a, a));
+    else if (n == 1)
+        _mm_store_ss(q, a);
+}
+#endif
+
 #if SH_SIMD == SH_SIMD_AVX512
 #if !SHI_HAS_AVX512
 #error "SH_SIMD is SH_SIMD_AVX512, but the compiler's target has no AVX-512F"
 #endif
-#include <immintrin.h>
 #define SH_SIMD_NAME "AVX-512"
 #define SHI_LANES 16
 typedef __m512 shi_v;
@@ -1434,12 +1454,31 @@ SHI_INLINE shi_i shi_shl(shi_i a, int n) { return _mm512_sll_epi32(a, _mm_cvtsi3
 SHI_INLINE shi_i shi_shr(shi_i a, int n) { return _mm512_srl_epi32(a, _mm_cvtsi32_si128(n)); }
 SHI_INLINE shi_v shi_as_float(shi_i a) { return _mm512_castsi512_ps(a); }
 SHI_INLINE shi_v shi_to_float(shi_i a) { return _mm512_cvtepi32_ps(a); }
+SHI_INLINE void shi_transpose4(shi_v v[4]) {
+    const __m512d a = _mm512_castps_pd(_mm512_unpacklo_ps(v[0], v[1])), b = _mm512_castps_pd(_mm512_unpacklo_ps(v[2], v[3]));
+    const __m512d c = _mm512_castps_pd(_mm512_unpackhi_ps(v[0], v[1])), d = _mm512_castps_pd(_mm512_unpackhi_ps(v[2], v[3]));
+    v[0] = _mm512_castpd_ps(_mm512_unpacklo_pd(a, b));
+    v[1] = _mm512_castpd_ps(_mm512_unpackhi_pd(a, b));
+    v[2] = _mm512_castpd_ps(_mm512_unpacklo_pd(c, d));
+    v[3] = _mm512_castpd_ps(_mm512_unpackhi_pd(c, d));
+}
+SHI_INLINE shi_v shi_load_fours(const unsigned char *p, size_t stride) {
+    shi_v v = _mm512_castps128_ps512(shi_load_four(p));
+    v = _mm512_insertf32x4(v, shi_load_four(p + stride), 1);
+    v = _mm512_insertf32x4(v, shi_load_four(p + 2 * stride), 2);
+    return _mm512_insertf32x4(v, shi_load_four(p + 3 * stride), 3);
+}
+SHI_INLINE void shi_store_fours(unsigned char *p, size_t stride, int n, shi_v v) {
+    shi_store_four(p, n, _mm512_castps512_ps128(v));
+    shi_store_four(p + stride, n, _mm512_extractf32x4_ps(v, 1));
+    shi_store_four(p + 2 * stride, n, _mm512_extractf32x4_ps(v, 2));
+    shi_store_four(p + 3 * stride, n, _mm512_extractf32x4_ps(v, 3));
+}
 
 #elif SH_SIMD == SH_SIMD_AVX2
 #if !SHI_HAS_AVX2
 #error "SH_SIMD is SH_SIMD_AVX2, but the compiler's target has no AVX2 with FMA"
 #endif
-#include <immintrin.h>
 #define SH_SIMD_NAME "AVX2+FMA"
 #define SHI_LANES 8
 typedef __m256 shi_v;
@@ -1468,12 +1507,26 @@ SHI_INLINE shi_i shi_shl(shi_i a, int n) { return _mm256_sll_epi32(a, _mm_cvtsi3
 SHI_INLINE shi_i shi_shr(shi_i a, int n) { return _mm256_srl_epi32(a, _mm_cvtsi32_si128(n)); }
 SHI_INLINE shi_v shi_as_float(shi_i a) { return _mm256_castsi256_ps(a); }
 SHI_INLINE shi_v shi_to_float(shi_i a) { return _mm256_cvtepi32_ps(a); }
+SHI_INLINE void shi_transpose4(shi_v v[4]) {
+    const __m256d a = _mm256_castps_pd(_mm256_unpacklo_ps(v[0], v[1])), b = _mm256_castps_pd(_mm256_unpacklo_ps(v[2], v[3]));
+    const __m256d c = _mm256_castps_pd(_mm256_unpackhi_ps(v[0], v[1])), d = _mm256_castps_pd(_mm256_unpackhi_ps(v[2], v[3]));
+    v[0] = _mm256_castpd_ps(_mm256_unpacklo_pd(a, b));
+    v[1] = _mm256_castpd_ps(_mm256_unpackhi_pd(a, b));
+    v[2] = _mm256_castpd_ps(_mm256_unpacklo_pd(c, d));
+    v[3] = _mm256_castpd_ps(_mm256_unpackhi_pd(c, d));
+}
+SHI_INLINE shi_v shi_load_fours(const unsigned char *p, size_t stride) {
+    return _mm256_insertf128_ps(_mm256_castps128_ps256(shi_load_four(p)), shi_load_four(p + stride), 1);
+}
+SHI_INLINE void shi_store_fours(unsigned char *p, size_t stride, int n, shi_v v) {
+    shi_store_four(p, n, _mm256_castps256_ps128(v));
+    shi_store_four(p + stride, n, _mm256_extractf128_ps(v, 1));
+}
 
 #elif SH_SIMD == SH_SIMD_SSE2
 #if !SHI_HAS_SSE2
 #error "SH_SIMD is SH_SIMD_SSE2, but the compiler's target has no SSE2"
 #endif
-#include <emmintrin.h>
 #define SH_SIMD_NAME "SSE2"
 #define SHI_LANES 4
 typedef __m128 shi_v;
@@ -1504,6 +1557,7 @@ SHI_INLINE shi_i shi_shl(shi_i a, int n) { return _mm_sll_epi32(a, _mm_cvtsi32_s
 SHI_INLINE shi_i shi_shr(shi_i a, int n) { return _mm_srl_epi32(a, _mm_cvtsi32_si128(n)); }
 SHI_INLINE shi_v shi_as_float(shi_i a) { return _mm_castsi128_ps(a); }
 SHI_INLINE shi_v shi_to_float(shi_i a) { return _mm_cvtepi32_ps(a); }
+SHI_INLINE void shi_transpose4(shi_v v[4]) { _MM_TRANSPOSE4_PS(v[0], v[1], v[2], v[3]); }
 
 #elif SH_SIMD == SH_SIMD_NEON
 #if !SHI_HAS_NEON
@@ -1567,6 +1621,13 @@ SHI_INLINE shi_i shi_shr(shi_i a, int n) {
 }
 SHI_INLINE shi_v shi_as_float(shi_i a) { return vreinterpretq_f32_s32(a); }
 SHI_INLINE shi_v shi_to_float(shi_i a) { return vcvtq_f32_s32(a); }
+SHI_INLINE void shi_transpose4(shi_v v[4]) {
+    const float32x4x2_t a = vtrnq_f32(v[0], v[1]), b = vtrnq_f32(v[2], v[3]);
+    v[0] = vcombine_f32(vget_low_f32(a.val[0]), vget_low_f32(b.val[0]));
+    v[1] = vcombine_f32(vget_low_f32(a.val[1]), vget_low_f32(b.val[1]));
+    v[2] = vcombine_f32(vget_high_f32(a.val[0]), vget_high_f32(b.val[0]));
+    v[3] = vcombine_f32(vget_high_f32(a.val[1]), vget_high_f32(b.val[1]));
+}
 
 #elif SH_SIMD == SH_SIMD_WASM
 #if !SHI_HAS_WASM
@@ -1601,6 +1662,14 @@ SHI_INLINE shi_i shi_shl(shi_i a, int n) { return wasm_i32x4_shl(a, (uint32_t)n)
 SHI_INLINE shi_i shi_shr(shi_i a, int n) { return wasm_u32x4_shr(a, (uint32_t)n); }
 SHI_INLINE shi_v shi_as_float(shi_i a) { return a; }
 SHI_INLINE shi_v shi_to_float(shi_i a) { return wasm_f32x4_convert_i32x4(a); }
+SHI_INLINE void shi_transpose4(shi_v v[4]) {
+    const shi_v a = wasm_i32x4_shuffle(v[0], v[1], 0, 4, 1, 5), b = wasm_i32x4_shuffle(v[2], v[3], 0, 4, 1, 5);
+    const shi_v c = wasm_i32x4_shuffle(v[0], v[1], 2, 6, 3, 7), d = wasm_i32x4_shuffle(v[2], v[3], 2, 6, 3, 7);
+    v[0] = wasm_i64x2_shuffle(a, b, 0, 2);
+    v[1] = wasm_i64x2_shuffle(a, b, 1, 3);
+    v[2] = wasm_i64x2_shuffle(c, d, 0, 2);
+    v[3] = wasm_i64x2_shuffle(c, d, 1, 3);
+}
 
 #elif SH_SIMD == SH_SIMD_SCALAR
 #define SH_SIMD_NAME "scalar"
@@ -1646,9 +1715,48 @@ SHI_INLINE shi_v shi_or(shi_v a, shi_v b) {
     shi_i x = shi_iload32(&a) | shi_iload32(&b);
     return shi_load(&x);
 }
+SHI_INLINE void shi_load4(const unsigned char *p, size_t stride, shi_v v[4]) {
+    (void)stride;
+    memcpy(v, p, 4 * sizeof *v);
+}
+SHI_INLINE void shi_store4(unsigned char *p, size_t stride, int n, const shi_v v[4]) {
+    (void)stride;
+    memcpy(p, v, (size_t)n * sizeof *v);
+}
 
 #else
 #error "SH_SIMD is not one of the SH_SIMD_... numbers"
+#endif
+
+#if SHI_LANES == 4
+SHI_INLINE shi_v shi_load_fours(const unsigned char *p, size_t stride) {
+    (void)stride;
+    return shi_load(p);
+}
+SHI_INLINE void shi_store_fours(unsigned char *p, size_t stride, int n, shi_v v) {
+    (void)stride;
+#if SH_SIMD == SH_SIMD_SSE2
+    shi_store_four(p, n, v);
+#else
+    float item[4];
+    shi_store(item, v);
+    memcpy(p, item, (size_t)n * sizeof(float));
+#endif
+}
+#endif
+
+#if SHI_LANES > 1
+SHI_INLINE void shi_load4(const unsigned char *p, size_t stride, shi_v v[4]) {
+    for (int i = 0; i < 4; i++)
+        v[i] = shi_load_fours(p + (size_t)i * stride, 4 * stride);
+    shi_transpose4(v);
+}
+SHI_INLINE void shi_store4(unsigned char *p, size_t stride, int n, const shi_v v[4]) {
+    shi_v r[4] = { v[0], v[1], v[2], v[3] };
+    shi_transpose4(r);
+    for (int i = 0; i < 4; i++)
+        shi_store_fours(p + (size_t)i * stride, 4 * stride, n, r[i]);
+}
 #endif
 
 
@@ -1659,6 +1767,435 @@ SHI_INLINE shi_i shi_iload_bytes(const unsigned char *p) {
 #else
     return shi_iload32(p);
 #endif
+}
+
+/* ---- Batch evaluation -----------------------------------------------------------------------------------------------------------
+ * Both reconstructions are one quadratic polynomial in x, y, z. With z^2 = 1 - x^2 - y^2 taken out, it has one coefficient per SH
+ * coefficient, and a nested form costs one fused multiply-add for each but the first: the least possible. */
+
+enum { SHI_BATCH = 512 }; /* directions per block: their coordinates stay in the first-level cache while the channels go by */
+
+enum { SHI_1, SHI_X, SHI_Y, SHI_Z, SHI_XX, SHI_XY, SHI_XZ, SHI_YY, SHI_YZ };
+
+/* The polynomial R0 + w1 R1.n + w2 n'R2 n. */
+SHI_INLINE void shi_polynomial_fold(int order, const float *c, float w1, float w2, float *p) {
+    p[SHI_1] = c[SH_R0];
+    if (order >= SH_L1) {
+        p[SHI_X] = w1 * c[SH_X];
+        p[SHI_Y] = w1 * c[SH_Y];
+        p[SHI_Z] = w1 * c[SH_Z];
+    }
+    if (order >= SH_L2) {
+        const float zz = -(c[SH_XX] + c[SH_YY]);
+        p[SHI_1] += w2 * zz;
+        p[SHI_XX] = w2 * (c[SH_XX] - zz);
+        p[SHI_XY] = 2.0f * w2 * c[SH_XY];
+        p[SHI_XZ] = 2.0f * w2 * c[SH_XZ];
+        p[SHI_YY] = w2 * (c[SH_YY] - zz);
+        p[SHI_YZ] = 2.0f * w2 * c[SH_YZ];
+    }
+}
+
+SHI_INLINE shi_v shi_polynomial(int order, const shi_v *p, shi_v x, shi_v y, shi_v z) {
+    if (order == SH_L0)
+        return p[SHI_1];
+    shi_v px = p[SHI_X], py = p[SHI_Y];
+    if (order >= SH_L2) {
+        px = shi_madd(p[SHI_XX], x, shi_madd(p[SHI_XY], y, shi_madd(p[SHI_XZ], z, px)));
+        py = shi_madd(p[SHI_YY], y, shi_madd(p[SHI_YZ], z, py));
+    }
+    return shi_madd(px, x, shi_madd(py, y, shi_madd(p[SHI_Z], z, p[SHI_1])));
+}
+
+SHI_INLINE void shi_splat_all(int order, const float *p, shi_v *v) {
+    for (int i = 0; i < SH_COUNT(order); i++)
+        v[i] = shi_splat(p[i]);
+}
+
+/* One channel of `count` directions, a multiple of SHI_LANES. */
+SHI_INLINE void shi_evaluate(int order, const float *polynomial, const float *x, const float *y, const float *z, float *out,
+                             size_t count) {
+    shi_v p[SH_COUNT(SH_L2)];
+    shi_splat_all(order, polynomial, p);
+    for (size_t i = 0; i < count; i += SHI_LANES)
+        shi_store(out + i, shi_polynomial(order, p, shi_load(x + i), shi_load(y + i), shi_load(z + i)));
+}
+
+/* A block of directions copied out of the caller's arrays, padded to whole vectors, and one channel of results. */
+typedef struct shi_block {
+    float x[SHI_BATCH], y[SHI_BATCH], z[SHI_BATCH], out[SHI_BATCH];
+} shi_block;
+
+SHI_INLINE size_t shi_round_up(size_t count) {
+    return (count + SHI_LANES - 1) / SHI_LANES * SHI_LANES;
+}
+
+SHI_INLINE void shi_copy_padded(const float *in, size_t count, float *out) {
+    memcpy(out, in, count * sizeof *out);
+    for (size_t i = count; i < shi_round_up(count); i++)
+        out[i] = 0.0f;
+}
+
+/* Whether two arrays of floats share memory. */
+SHI_INLINE int shi_overlap(const float *a, size_t a_count, const float *b, size_t b_count) {
+    const uintptr_t p = (uintptr_t)a, q = (uintptr_t)b;
+    return p < q + b_count * sizeof *b && q < p + a_count * sizeof *a;
+}
+
+SHI_INLINE size_t shi_at_most(size_t count, size_t limit) {
+    return count < limit ? count : limit;
+}
+
+/* The arguments of a planar batch: the reconstruction's factors of bands 1 and 2, and the caller's. */
+typedef struct shi_soa {
+    float w1, w2;
+    int channels;
+    const float *c, *x, *y, *z;
+    float *out;
+    size_t count;
+} shi_soa;
+
+SHI_INLINE void shi_evaluate_soa(int order, const shi_soa *job) {
+    const float *x = job->x, *y = job->y, *z = job->z;
+    const size_t count = job->count, total = (size_t)job->channels * count;
+    const int copy = shi_overlap(x, count, job->out, total) || shi_overlap(y, count, job->out, total) ||
+                     shi_overlap(z, count, job->out, total);
+    for (size_t i = 0; i < count; i += SHI_BATCH) {
+        const size_t n = shi_at_most(count - i, SHI_BATCH);
+        const size_t whole = copy ? 0 : n / SHI_LANES * SHI_LANES, rest = n - whole; /* in place; through a copy */
+        shi_block block;
+        if (rest) {
+            shi_copy_padded(x + i + whole, rest, block.x);
+            shi_copy_padded(y + i + whole, rest, block.y);
+            shi_copy_padded(z + i + whole, rest, block.z);
+        }
+        for (int k = 0; k < job->channels; k++) {
+            float polynomial[SH_COUNT(SH_L2)], *out = job->out + (size_t)k * count + i;
+            shi_polynomial_fold(order, job->c + k * SH_COUNT(order), job->w1, job->w2, polynomial);
+            shi_evaluate(order, polynomial, x + i, y + i, z + i, out, whole);
+            if (rest) {
+                shi_evaluate(order, polynomial, block.x, block.y, block.z, block.out, shi_round_up(rest));
+                memcpy(out + whole, block.out, rest * sizeof *out);
+            }
+        }
+    }
+}
+
+/* One function per order: a literal order calls one of them and leaves the others out. */
+SHI_FUNCTION void shi_evaluate_soa_l0(const shi_soa *job) { shi_evaluate_soa(SH_L0, job); }
+SHI_FUNCTION void shi_evaluate_soa_l1(const shi_soa *job) { shi_evaluate_soa(SH_L1, job); }
+SHI_FUNCTION void shi_evaluate_soa_l2(const shi_soa *job) { shi_evaluate_soa(SH_L2, job); }
+SHI_INLINE void shi_evaluate_soa_any(int order, const shi_soa *job) {
+    if (order == SH_L0)
+        shi_evaluate_soa_l0(job);
+    else if (order == SH_L1)
+        shi_evaluate_soa_l1(job);
+    else
+        shi_evaluate_soa_l2(job);
+}
+
+SHI_INLINE void sh_radiance_batch(int order, int channels, const float *c, const float *x, const float *y, const float *z, float *out,
+                                  size_t count) {
+    const shi_soa job = { 3.0f, 7.5f, channels, c, x, y, z, out, count };
+    shi_evaluate_soa_any(order, &job);
+}
+
+SHI_INLINE void sh_irradiance_batch(int order, int channels, const float *c, const float *x, const float *y, const float *z,
+                                    float *out, size_t count) {
+    const shi_soa job = { 2.0f, 1.875f, channels, c, x, y, z, out, count };
+    shi_evaluate_soa_any(order, &job);
+}
+
+/* The arguments of an interleaved batch; strides in bytes. */
+typedef struct shi_aos {
+    float w1, w2;
+    int channels;
+    const float *c;
+    const unsigned char *in;
+    size_t in_stride;
+    unsigned char *out;
+    size_t out_stride, count;
+} shi_aos;
+
+/* Items from `first` on, by way of planar blocks: any number of channels. */
+SHI_INLINE void shi_evaluate_aos_blocks(int order, const shi_aos *job, size_t first) {
+    for (size_t i = first; i < job->count; i += SHI_BATCH) {
+        const size_t n = shi_at_most(job->count - i, SHI_BATCH);
+        shi_block block;
+        for (size_t j = 0; j < shi_round_up(n); j++) {
+            float d[3] = { 0.0f, 0.0f, 0.0f };
+            if (j < n)
+                memcpy(d, job->in + (i + j) * job->in_stride, sizeof d);
+            block.x[j] = d[0];
+            block.y[j] = d[1];
+            block.z[j] = d[2];
+        }
+        for (int k = 0; k < job->channels; k++) {
+            float polynomial[SH_COUNT(SH_L2)];
+            shi_polynomial_fold(order, job->c + k * SH_COUNT(order), job->w1, job->w2, polynomial);
+            shi_evaluate(order, polynomial, block.x, block.y, block.z, block.out, shi_round_up(n));
+            for (size_t j = 0; j < n; j++)
+                memcpy(job->out + (i + j) * job->out_stride + (size_t)k * sizeof(float), block.out + j, sizeof(float));
+        }
+    }
+}
+
+/* Up to four channels go straight from item to item, transposed in registers. load4 reads one float past a direction, so the last
+ * vector is left to the blocks. Returns how many items are done. */
+SHI_INLINE size_t shi_evaluate_aos_lanes(int order, int channels, const shi_aos *job) {
+    shi_v p[4][SH_COUNT(SH_L2)], d[4], v[4] = { shi_splat(0), shi_splat(0), shi_splat(0), shi_splat(0) };
+    size_t i = 0;
+    for (int k = 0; k < channels; k++) {
+        float polynomial[SH_COUNT(SH_L2)];
+        shi_polynomial_fold(order, job->c + k * SH_COUNT(order), job->w1, job->w2, polynomial);
+        shi_splat_all(order, polynomial, p[k]);
+    }
+    for (; job->count - i > SHI_LANES; i += SHI_LANES) {
+        shi_load4(job->in + i * job->in_stride, job->in_stride, d);
+        for (int k = 0; k < channels; k++)
+            v[k] = shi_polynomial(order, p[k], d[0], d[1], d[2]);
+        shi_store4(job->out + i * job->out_stride, job->out_stride, channels, v);
+    }
+    return i;
+}
+
+SHI_INLINE void shi_evaluate_aos(int order, const shi_aos *job) {
+    size_t done = 0;
+    if (job->channels == 3 && job->count)
+        done = shi_evaluate_aos_lanes(order, 3, job);
+    shi_evaluate_aos_blocks(order, job, done);
+}
+
+SHI_FUNCTION void shi_evaluate_aos_l0(const shi_aos *job) { shi_evaluate_aos(SH_L0, job); }
+SHI_FUNCTION void shi_evaluate_aos_l1(const shi_aos *job) { shi_evaluate_aos(SH_L1, job); }
+SHI_FUNCTION void shi_evaluate_aos_l2(const shi_aos *job) { shi_evaluate_aos(SH_L2, job); }
+SHI_INLINE void shi_evaluate_aos_any(int order, float w1, float w2, int channels, const float *c, const float *dir, size_t dir_stride,
+                                     float *out, size_t out_stride, size_t count) {
+    const shi_aos job = { w1, w2, channels, c, (const unsigned char *)dir, dir_stride ? dir_stride : 3 * sizeof *dir,
+                          (unsigned char *)out, out_stride ? out_stride : (size_t)channels * sizeof *out, count };
+    if (order == SH_L0)
+        shi_evaluate_aos_l0(&job);
+    else if (order == SH_L1)
+        shi_evaluate_aos_l1(&job);
+    else
+        shi_evaluate_aos_l2(&job);
+}
+
+SHI_INLINE void sh_radiance_batch_aos(int order, int channels, const float *c, const float *dir, size_t dir_stride, float *out,
+                                      size_t out_stride, size_t count) {
+    shi_evaluate_aos_any(order, 3.0f, 7.5f, channels, c, dir, dir_stride, out, out_stride, count);
+}
+
+SHI_INLINE void sh_irradiance_batch_aos(int order, int channels, const float *c, const float *n, size_t n_stride, float *out,
+                                        size_t out_stride, size_t count) {
+    shi_evaluate_aos_any(order, 2.0f, 1.875f, channels, c, n, n_stride, out, out_stride, count);
+}
+
+/* One item's channel is nine floats: they are transposed to a vector per coefficient, SHI_LANES items at a time. Two loads of
+ * four and one of the last four, of which the first three are known already, stay inside the item. */
+SHI_INLINE void shi_load_coefficients(int order, const unsigned char *c, size_t stride, shi_v *v) {
+    shi_v last[4];
+    shi_load4(c, stride, v);
+    if (order >= SH_L2) {
+        shi_load4(c + 4 * sizeof(float), stride, v + 4);
+        shi_load4(c + 5 * sizeof(float), stride, last);
+        v[SH_YZ] = last[3];
+    }
+}
+
+/* Irradiance by lane: R0 + 2 R1.n + 15/8 (xx (x^2 - z^2) + yy (y^2 - z^2) + 2 (xy xy + xz xz + yz yz)). */
+SHI_INLINE shi_v shi_irradiance_lanes(int order, const shi_v *c, shi_v x, shi_v y, shi_v z) {
+    shi_v sum = shi_madd(c[SH_Z], z, shi_madd(c[SH_Y], y, shi_mul(c[SH_X], x)));
+    if (order >= SH_L2) {
+        const shi_v zz = shi_mul(z, z), a = shi_sub(shi_mul(x, x), zz), b = shi_sub(shi_mul(y, y), zz);
+        const shi_v mixed = shi_madd(c[SH_XY], shi_mul(x, y), shi_madd(c[SH_XZ], shi_mul(x, z), shi_mul(c[SH_YZ], shi_mul(y, z))));
+        const shi_v diagonal = shi_madd(c[SH_XX], a, shi_mul(c[SH_YY], b));
+        sum = shi_madd(shi_splat(0.9375f), diagonal, shi_madd(shi_splat(1.875f), mixed, sum));
+    }
+    return shi_madd(shi_splat(2.0f), sum, c[SH_R0]);
+}
+
+/* A channel of fewer than SHI_LANES items, copied out and padded. */
+SHI_INLINE void shi_copy_coefficients(int order, int channels, const float *c, size_t count, float *out) {
+    memset(out, 0, SHI_LANES * (size_t)SH_COUNT(order) * sizeof *out);
+    for (size_t i = 0; i < count; i++)
+        memcpy(out + i * (size_t)SH_COUNT(order), c + i * (size_t)(channels * SH_COUNT(order)), (size_t)SH_COUNT(order) * sizeof *out);
+}
+
+/* Order 1 or 2. */
+SHI_INLINE void shi_evaluate_probes(int order, int channels, const float *c, const float *x, const float *y, const float *z, float *out,
+                                    size_t count) {
+    const size_t set = (size_t)SH_COUNT(order), item = set * (size_t)channels;
+    for (size_t i = 0; i < count; i += SHI_LANES) {
+        const size_t n = shi_at_most(count - i, SHI_LANES);
+        float coords[3][SHI_LANES], sets[SHI_LANES * SH_COUNT(SH_L2)], results[SHI_LANES];
+        shi_copy_padded(x + i, n, coords[0]);
+        shi_copy_padded(y + i, n, coords[1]);
+        shi_copy_padded(z + i, n, coords[2]);
+        const shi_v vx = shi_load(coords[0]), vy = shi_load(coords[1]), vz = shi_load(coords[2]);
+        for (int k = 0; k < channels; k++) {
+            const float *ck = c + i * item + (size_t)k * set;
+            shi_v v[SH_COUNT(SH_L2)];
+            if (n == SHI_LANES) {
+                shi_load_coefficients(order, (const unsigned char *)ck, item * sizeof *c, v);
+                shi_store(out + (size_t)k * count + i, shi_irradiance_lanes(order, v, vx, vy, vz));
+            } else {
+                shi_copy_coefficients(order, channels, ck, n, sets);
+                shi_load_coefficients(order, (const unsigned char *)sets, set * sizeof *c, v);
+                shi_store(results, shi_irradiance_lanes(order, v, vx, vy, vz));
+                memcpy(out + (size_t)k * count + i, results, n * sizeof *out);
+            }
+        }
+    }
+}
+SHI_FUNCTION void shi_evaluate_probes_l1(int channels, const float *c, const float *x, const float *y, const float *z, float *out,
+                                         size_t count) {
+    shi_evaluate_probes(SH_L1, channels, c, x, y, z, out, count);
+}
+SHI_FUNCTION void shi_evaluate_probes_l2(int channels, const float *c, const float *x, const float *y, const float *z, float *out,
+                                         size_t count) {
+    shi_evaluate_probes(SH_L2, channels, c, x, y, z, out, count);
+}
+
+SHI_INLINE void sh_irradiance_probes_batch(int order, int channels, const float *c, const float *x, const float *y, const float *z,
+                                           float *out, size_t count) {
+    if (order == SH_L2)
+        shi_evaluate_probes_l2(channels, c, x, y, z, out, count);
+    else if (order == SH_L1)
+        shi_evaluate_probes_l1(channels, c, x, y, z, out, count);
+    else
+        for (size_t i = 0; i < count; i++)
+            for (int k = 0; k < channels; k++)
+                out[(size_t)k * count + i] = c[i * (size_t)channels + (size_t)k];
+}
+
+/* ---- Projection of samples ------------------------------------------------------------------------------------------------------
+ * Sums in float vectors over short chunks, these in float vectors over a run of chunks, the runs in double. */
+
+enum { SHI_CHUNK = 16 * SHI_LANES, SHI_RUN = 16 * SHI_CHUNK };
+
+/* Sums of w, v, vx, vy, vz, vxx, vxy, vxz, vyy, vyz, where v = weight * value. */
+enum { SHI_SAMPLE_WEIGHT = SH_COUNT(SH_L2), SHI_SAMPLE_SUMS };
+
+/* Adds a chunk of `count` samples, a multiple of SHI_LANES; weight NULL: all 1. */
+SHI_INLINE void shi_sum_chunk(int order, const float *x, const float *y, const float *z, const float *value, const float *weight,
+                              size_t count, shi_v total[SHI_SAMPLE_SUMS]) {
+    const shi_v zero = shi_splat(0.0f);
+    shi_v w0 = zero, s0 = zero, sx = zero, sy = zero, sz = zero, sxx = zero, sxy = zero, sxz = zero, syy = zero, syz = zero;
+    for (size_t i = 0; i < count; i += SHI_LANES) {
+        const shi_v px = shi_load(x + i), py = shi_load(y + i), pz = shi_load(z + i);
+        shi_v v = shi_load(value + i);
+        if (weight) {
+            const shi_v w = shi_load(weight + i);
+            w0 = shi_add(w0, w);
+            v = shi_mul(v, w);
+        }
+        s0 = shi_add(s0, v);
+        if (order >= SH_L1) {
+            const shi_v vx = shi_mul(v, px), vy = shi_mul(v, py), vz = shi_mul(v, pz);
+            sx = shi_add(sx, vx);
+            sy = shi_add(sy, vy);
+            sz = shi_add(sz, vz);
+            if (order >= SH_L2) {
+                sxx = shi_madd(vx, px, sxx);
+                sxy = shi_madd(vx, py, sxy);
+                sxz = shi_madd(vx, pz, sxz);
+                syy = shi_madd(vy, py, syy);
+                syz = shi_madd(vy, pz, syz);
+            }
+        }
+    }
+    const shi_v sums[SHI_SAMPLE_SUMS] = { s0, sx, sy, sz, sxx, sxy, sxz, syy, syz, w0 };
+    for (int i = 0; i < SHI_SAMPLE_SUMS; i++)
+        total[i] = shi_add(total[i], sums[i]);
+}
+
+/* Adds a run's sums to an accumulator. */
+SHI_FUNCTION void shi_sum_run(int order, const shi_v total[SHI_SAMPLE_SUMS], sh_accum *accum) {
+    double sum[SHI_SAMPLE_SUMS] = { 0 };
+    for (int i = 0; i < SHI_SAMPLE_SUMS; i++) {
+        float lanes[SHI_LANES];
+        shi_store(lanes, total[i]);
+        for (int j = 0; j < SHI_LANES; j++)
+            sum[i] += (double)lanes[j];
+    }
+    const double third = sum[SH_R0] / 3.0;
+    if (order >= SH_L2) {
+        sum[SH_XX] -= third;
+        sum[SH_YY] -= third;
+    }
+    for (int i = 0; i < SH_COUNT(order); i++)
+        accum->sum[i] += sum[i];
+    accum->weight += sum[SHI_SAMPLE_WEIGHT];
+}
+
+/* Planar samples, as in sh_accum_samples. */
+typedef struct shi_samples {
+    const float *x, *y, *z, *value, *weight;
+    size_t count;
+} shi_samples;
+
+/* Samples [first, first + count), fewer than SHI_LANES, by way of a padded copy. */
+SHI_INLINE void shi_sum_tail(int order, const shi_samples *s, size_t first, size_t count, shi_v total[SHI_SAMPLE_SUMS]) {
+    float tail[5][SHI_LANES];
+    shi_copy_padded(s->x + first, count, tail[0]);
+    shi_copy_padded(s->y + first, count, tail[1]);
+    shi_copy_padded(s->z + first, count, tail[2]);
+    shi_copy_padded(s->value + first, count, tail[3]);
+    if (s->weight)
+        shi_copy_padded(s->weight + first, count, tail[4]);
+    shi_sum_chunk(order, tail[0], tail[1], tail[2], tail[3], s->weight ? tail[4] : NULL, SHI_LANES, total);
+}
+
+SHI_INLINE void shi_accum_channel(int order, const shi_samples *s, sh_accum *accum) {
+    const size_t whole = s->count / SHI_LANES * SHI_LANES;
+    for (size_t run = 0; run < s->count; run += SHI_RUN) {
+        const size_t end = run + shi_at_most(s->count - run, SHI_RUN), whole_end = run + shi_at_most(whole - run, SHI_RUN);
+        shi_v total[SHI_SAMPLE_SUMS];
+        for (int i = 0; i < SHI_SAMPLE_SUMS; i++)
+            total[i] = shi_splat(0.0f);
+        for (size_t i = run; i < whole_end; i += SHI_CHUNK)
+            shi_sum_chunk(order, s->x + i, s->y + i, s->z + i, s->value + i, s->weight ? s->weight + i : NULL,
+                          shi_at_most(whole_end - i, SHI_CHUNK), total);
+        if (whole_end < end)
+            shi_sum_tail(order, s, whole_end, end - whole_end, total);
+        shi_sum_run(order, total, accum);
+    }
+    if (!s->weight)
+        accum->weight += (double)s->count;
+}
+SHI_FUNCTION void shi_accum_channel_l0(const shi_samples *s, sh_accum *accum) { shi_accum_channel(SH_L0, s, accum); }
+SHI_FUNCTION void shi_accum_channel_l1(const shi_samples *s, sh_accum *accum) { shi_accum_channel(SH_L1, s, accum); }
+SHI_FUNCTION void shi_accum_channel_l2(const shi_samples *s, sh_accum *accum) { shi_accum_channel(SH_L2, s, accum); }
+
+SHI_INLINE int sh_accum_samples(int order, int channels, const float *x, const float *y, const float *z, const float *value,
+                                const float *weight, size_t count, sh_accum *accum) {
+    if (!shi_order_ok(order) || channels < 1 || !accum || (count && !(x && y && z && value)))
+        return SH_ERROR_ARGUMENT;
+    for (int k = 0; count && k < channels; k++) {
+        const shi_samples samples = { x, y, z, value + (size_t)k * count, weight, count };
+        if (order == SH_L0)
+            shi_accum_channel_l0(&samples, accum + k);
+        else if (order == SH_L1)
+            shi_accum_channel_l1(&samples, accum + k);
+        else
+            shi_accum_channel_l2(&samples, accum + k);
+    }
+    return SH_OK;
+}
+
+SHI_INLINE int sh_project_samples(int order, int channels, const float *x, const float *y, const float *z, const float *value,
+                                  const float *weight, size_t count, float *c) {
+    if (!shi_order_ok(order) || channels < 1 || !c || (count && !(x && y && z && value)))
+        return SH_ERROR_ARGUMENT;
+    for (int k = 0; k < channels; k++) {
+        sh_accum accum;
+        sh_accum_clear(1, &accum);
+        if (count)
+            sh_accum_samples(order, 1, x, y, z, value + (size_t)k * count, weight, count, &accum);
+        sh_accum_finish(order, 1, &accum, c + k * SH_COUNT(order));
+    }
+    return SH_OK;
 }
 
 /* ---- Images ---------------------------------------------------------------------------------------------------------------------
@@ -1694,7 +2231,7 @@ SHI_FUNCTION int sh_image_channels(const sh_image *image) {
 }
 
 SHI_FUNCTION int shi_image_check(const sh_image *image, shi_layout *layout) {
-    if (!image || !image->pixels)
+    if (!image->pixels)
         return SH_ERROR_ARGUMENT;
     if (!shi_image_layout(image, layout))
         return SH_ERROR_FORMAT;
@@ -1731,10 +2268,13 @@ SHI_FUNCTION float shi_srgb_to_linear(int byte) {
     return (float)(b > 0.04045 ? t * t * root * root : b / 12.92);
 }
 
-SHI_FUNCTION void shi_reader_init(const sh_image *image, const shi_layout *layout, unsigned flags, shi_reader *reader) {
+/* Checks the image as well. */
+SHI_FUNCTION int shi_reader_init(const sh_image *image, unsigned flags, shi_reader *reader) {
+    const int status = shi_image_check(image, &reader->layout);
+    if (status != SH_OK)
+        return status;
     reader->image = image;
-    reader->layout = *layout;
-    reader->stride = image->row_stride ? image->row_stride : (size_t)image->width * layout->pixel_size;
+    reader->stride = image->row_stride ? image->row_stride : (size_t)image->width * reader->layout.pixel_size;
     reader->flags = flags;
     reader->careful = 0;
     reader->scale = 1.0f;
@@ -1742,6 +2282,7 @@ SHI_FUNCTION void shi_reader_init(const sh_image *image, const shi_layout *layou
     if (image->format == SH_SRGB8)
         for (int i = 0; i < 256; i++)
             reader->srgb[i] = shi_srgb_to_linear(i);
+    return SH_OK;
 }
 
 /* Halves to floats. Infinite and NaN become infinite. Subnormal halves go through an integer, so that flush-to-zero spares them. */
@@ -1815,7 +2356,7 @@ typedef struct shi_scratch {
     float decoded[SHI_BLOCK * 4];
 } shi_scratch;
 
-SHI_FUNCTION const void *shi_read_block(shi_reader *reader, int row, int x, int count, shi_scratch *scratch) {
+SHI_FUNCTION const unsigned char *shi_read_block(shi_reader *reader, int row, int x, int count, shi_scratch *scratch) {
     const size_t size = reader->layout.pixel_size;
     const unsigned char *in = (const unsigned char *)reader->image->pixels + (size_t)row * reader->stride + (size_t)x * size;
     const int values = SHI_BLOCK * reader->layout.interleave;
@@ -1837,7 +2378,7 @@ SHI_FUNCTION const void *shi_read_block(shi_reader *reader, int row, int x, int 
     }
     if (reader->careful && reader->layout.planes == 1)
         shi_clean(reader, count, scratch->decoded);
-    return scratch->decoded;
+    return (const unsigned char *)scratch->decoded;
 }
 
 /* ---- Equirectangular panoramas --------------------------------------------------------------------------------------------------
@@ -1997,7 +2538,7 @@ SHI_FUNCTION void shi_row_spread(const shi_row_weights *w, const double mean[SHI
 SHI_INLINE void shi_fold_rows(int order, shi_reader *reader, const shi_azimuth_table *table, int row, int rows, shi_row_sums *sums) {
     const int width = reader->image->width, half = width % 2 ? width : width / 2;
     const int interleave = reader->layout.interleave, phases = shi_phases(interleave);
-    const double block_angle = 2.0 * SHI_PI * SHI_BLOCK / width, block_cos = cos(block_angle), block_sin = sin(block_angle);
+    const double block_angle = 2.0 * SHI_PI * (double)SHI_BLOCK / width, block_cos = cos(block_angle), block_sin = sin(block_angle);
     double c = 1.0, s = 0.0;
     shi_scratch scratch[4];
     memset(sums, 0, sizeof *sums);
@@ -2023,7 +2564,7 @@ SHI_INLINE void shi_fold_rows(int order, shi_reader *reader, const shi_azimuth_t
 }
 
 /* The means over azimuth of one row's five functions, per colour channel; returns 0 if one is not finite. */
-SHI_FUNCTION int shi_fold_means(int order, const shi_reader *reader, const shi_v total[SHI_PHASES][SHI_SUMS], double mean[3][SHI_SUMS]) {
+SHI_FUNCTION int shi_fold_means(int order, const shi_reader *reader, shi_v total[SHI_PHASES][SHI_SUMS], double mean[3][SHI_SUMS]) {
     const shi_layout *layout = &reader->layout;
     const int phases = shi_phases(layout->interleave);
     const double width = reader->image->width, step = SHI_PI / width, unit = 1.0 / (width * (double)reader->scale);
@@ -2074,63 +2615,58 @@ SHI_INLINE void shi_equirect_means(int order, shi_reader *reader, const shi_azim
     }
 }
 
-SHI_INLINE int shi_equirect_rows(int order, const sh_image *image, unsigned flags, int first_row, int row_count, sh_accum *accum,
-                                 sh_report *report) {
-    shi_layout layout;
-    const int status = shi_image_check(image, &layout);
-    if (status != SH_OK)
-        return status;
-    if (!accum || flags & ~(unsigned)(SH_CLAMP_NEGATIVE | SH_POINT_TEXELS | SH_CLOCKWISE))
-        return SH_ERROR_ARGUMENT;
-    if (first_row < 0 || row_count < 0 || first_row > image->height - row_count)
-        return SH_ERROR_SIZE;
+/* The arguments of a projection. */
+typedef struct shi_rows {
+    const sh_image *image;
+    unsigned flags;
+    int first, count;
+    sh_accum *accum;
+    sh_report *report;
+} shi_rows;
+
+SHI_INLINE int shi_equirect_rows(int order, const shi_rows *job) {
+    const sh_image *image = job->image;
+    const int end = job->first + job->count, point = (job->flags & SH_POINT_TEXELS) != 0;
+    const int count_negative = job->report || job->flags & SH_CLAMP_NEGATIVE;
     shi_reader reader;
     shi_azimuth_table table;
-    shi_reader_init(image, &layout, flags, &reader);
-    shi_azimuth_table_init(image->width, layout.interleave, &table);
-    for (int row = first_row; row < first_row + row_count; row += 2) {
+    const int status = shi_reader_init(image, job->flags, &reader);
+    if (status != SH_OK)
+        return status;
+    shi_azimuth_table_init(image->width, reader.layout.interleave, &table);
+    for (int row = job->first; row < end; row += 2) {
         double mean[2][3][SHI_SUMS] = { { { 0 } } };
-        const int rows = first_row + row_count - row < 2 ? 1 : 2;
-        shi_equirect_means(order, &reader, &table, row, rows, report || flags & SH_CLAMP_NEGATIVE, mean);
+        const int rows = end - row < 2 ? 1 : 2;
+        shi_equirect_means(order, &reader, &table, row, rows, count_negative, mean);
         for (int r = 0; r < rows; r++) {
             shi_row_weights w;
-            if (flags & SH_POINT_TEXELS)
+            if (point)
                 shi_row_weights_point(row + r, image->height, &w);
             else
                 shi_row_weights_area(row + r, image->height, &w);
-            for (int k = 0; k < layout.channels; k++)
-                shi_row_spread(&w, mean[r][k], accum + k);
+            for (int k = 0; k < reader.layout.channels; k++)
+                shi_row_spread(&w, mean[r][k], job->accum + k);
         }
     }
-    if (report) {
-        report->texels += (uint64_t)row_count * (uint64_t)image->width;
-        report->nonfinite += reader.report.nonfinite;
-        report->negative += reader.report.negative;
+    if (job->report) {
+        job->report->texels += (uint64_t)job->count * (uint64_t)image->width;
+        job->report->nonfinite += reader.report.nonfinite;
+        job->report->negative += reader.report.negative;
     }
     return SH_OK;
 }
-
-SHI_FUNCTION int shi_equirect_rows_l0(const sh_image *image, unsigned flags, int first_row, int row_count, sh_accum *accum,
-                                      sh_report *report) {
-    return shi_equirect_rows(SH_L0, image, flags, first_row, row_count, accum, report);
-}
-SHI_FUNCTION int shi_equirect_rows_l1(const sh_image *image, unsigned flags, int first_row, int row_count, sh_accum *accum,
-                                      sh_report *report) {
-    return shi_equirect_rows(SH_L1, image, flags, first_row, row_count, accum, report);
-}
-SHI_FUNCTION int shi_equirect_rows_l2(const sh_image *image, unsigned flags, int first_row, int row_count, sh_accum *accum,
-                                      sh_report *report) {
-    return shi_equirect_rows(SH_L2, image, flags, first_row, row_count, accum, report);
-}
+SHI_FUNCTION int shi_equirect_rows_l0(const shi_rows *job) { return shi_equirect_rows(SH_L0, job); }
+SHI_FUNCTION int shi_equirect_rows_l1(const shi_rows *job) { return shi_equirect_rows(SH_L1, job); }
+SHI_FUNCTION int shi_equirect_rows_l2(const shi_rows *job) { return shi_equirect_rows(SH_L2, job); }
 
 SHI_INLINE int sh_project_equirect_rows(int order, const sh_image *image, unsigned flags, int first_row, int row_count,
                                         sh_accum *accum, sh_report *report) {
-    switch (order) {
-    case SH_L0: return shi_equirect_rows_l0(image, flags, first_row, row_count, accum, report);
-    case SH_L1: return shi_equirect_rows_l1(image, flags, first_row, row_count, accum, report);
-    case SH_L2: return shi_equirect_rows_l2(image, flags, first_row, row_count, accum, report);
-    default: return SH_ERROR_ARGUMENT;
-    }
+    const shi_rows job = { image, flags, first_row, row_count, accum, report };
+    if (!shi_order_ok(order) || !image || !accum || flags & ~(unsigned)(SH_CLAMP_NEGATIVE | SH_POINT_TEXELS | SH_CLOCKWISE))
+        return SH_ERROR_ARGUMENT;
+    if (first_row < 0 || row_count < 0 || first_row > image->height - row_count)
+        return SH_ERROR_SIZE;
+    return order == SH_L0 ? shi_equirect_rows_l0(&job) : order == SH_L1 ? shi_equirect_rows_l1(&job) : shi_equirect_rows_l2(&job);
 }
 
 SHI_INLINE int sh_project_equirect(int order, const sh_image *image, unsigned flags, float *c, sh_report *report) {
