@@ -241,8 +241,9 @@ typedef enum sh_window {
 } sh_window;
 
 /* Removes ringing: out = c under the weakest window of a family, one for all channels, for which no channel's radiance is negative
- * anywhere (>= -1e-6 R0, by sh_min). Returns its parameter: a width (INFINITY: nothing was to be done) or a lambda. R0 < 0 cannot be
- * helped: such channels have no say. out may be c. */
+ * anywhere (>= -1e-6 R0, by sh_min); 1e-4 weaker, one is. (Where even weaker ones would do again, since bands fade at different rates, it
+ * finds one of the limits.) Returns its parameter: a width (INFINITY: nothing was to be done) or a lambda. R0 < 0 cannot be helped:
+ * such channels have no say. At most 40 minima per channel and pass, one pass or two as a rule, nine at most. out may be c. */
 SHI_INLINE float sh_dering(int order, int channels, const float *c, sh_window window, float *out);
 
 /* The lowest order at which the irradiance (or the radiance) of an L2 set, anywhere, differs from L2's by at most `tolerance`, which is
@@ -1017,37 +1018,43 @@ SHI_INLINE float sh_irradiance_max(int order, const float *c, float at[3]) {
     return shi_extremum(order, c, -1.0, 2.0, 1.875, at);
 }
 
-/* The smallest eigenvalue R0 + 3 value[0] - x of the moment matrix: x >= 0 is the largest root of x - 3 value[0] = sum of b / (x + g), where
- * b = 3 linear^2, g = 3 (value - value[0]), or 0. The right side falls and is convex, so Newton's method climbs from any x that is
- * too small, as are the roots with one term alone; the largest of them is within a factor of 3 of the sum. */
+/* base - x + sum of b / (x + g), which falls and is convex in x > 0. */
+SHI_INLINE double shi_secular(double base, const double b[3], const double g[3], double x, double *sum1, double *sum2) {
+    *sum1 = *sum2 = 0.0;
+    for (int i = 0; i < 3; i++) {
+        const double inverse = 1.0 / (x + g[i]), term = b[i] * inverse;
+        *sum1 += term;
+        *sum2 += term * inverse;
+    }
+    return base - x + *sum1;
+}
+
+/* The smallest eigenvalue of the moment matrix is R0 + 3 value[0] - x, where x >= 0 is the root of shi_secular (or 0) for base = 3 value[0],
+ * b = 3 linear^2, g = 3 (value - value[0]). Its tangents pass below it, so that Newton's method leads from either side to the left
+ * of the root and climbs. In 1 / x the sum is concave: a tangent there, solved for its zero, descends from the right, and gives Newton's
+ * method a fresh start where a pole with a small b makes it slow. Ends when the root is no more than `enough` beyond `left`. */
 SHI_FUNCTION float sh_ambient_floor(const float *c) {
     shi_quadric q;
-    double g[3], b[3], x = 0.0;
+    double g[3], b[3], sum1, sum2, left = 0.0;
     shi_quadric_init(SH_L2, c, 1.0, &q);
-    const double base = 3.0 * q.value[0], enough = 1e-5 * fabs(q.mean);
     for (int i = 0; i < 3; i++) {
         g[i] = 3.0 * (q.value[i] - q.value[0]);
         b[i] = 3.0 * q.linear[i] * q.linear[i];
-        const double product = b[i] + base * g[i], sum = g[i] - base;
-        if (product > 0.0) {
-            const double root = 2.0 * product / (sum + sqrt(sum * sum + 4.0 * product));
-            x = root > x ? root : x;
-        }
     }
-    for (int step = 0; step < 20; step++) {
-        double excess = base - x, slope = 1.0;
-        for (int i = 0; i < 3; i++) {
-            const double inverse = b[i] > 0.0 ? 1.0 / (x + g[i]) : 0.0, term = b[i] * inverse;
-            excess += term;
-            slope += term * inverse;
-        }
-        if (!(excess > 0.0))
+    const double base = 3.0 * q.value[0], total = b[0] + b[1] + b[2], width = sqrt(base * base + 4.0 * total);
+    const double enough = 3e-8 * (fabs(q.mean) + width);
+    double right = total > 0.0 ? 2.0 * total / (width - base) : 0.0;
+    for (int step = 0; step < 30 && right > enough; step++) {
+        const double excess = shi_secular(base, b, g, right, &sum1, &sum2), bound = right + excess / (1.0 + sum2);
+        const double pole = right * right * sum2, rest = base + sum1 - right * sum2;
+        left = bound > left ? bound : left;
+        right = 0.5 * (rest + sqrt(rest * rest + 4.0 * pole));
+        const double probe = left + enough, lack = shi_secular(base, b, g, probe, &sum1, &sum2);
+        if (!(lack > 0.0))
             break;
-        x += excess / slope;
-        if (excess < enough * slope)
-            break;
+        left = probe + lack / (1.0 + sum2);
     }
-    return (float)(q.mean + base - x);
+    return (float)(q.mean + base - left);
 }
 
 SHI_INLINE int sh_is_realizable(int order, const float *c) {
