@@ -2690,6 +2690,265 @@ SHI_INLINE int sh_project_equirect(int order, const sh_image *image, unsigned fl
         *report = found;
     return SH_OK;
 }
+/* ---- Batches of bounded irradiance and of the other models ----------------------------------------------------------------------
+ * A channel's prepared model is splatted once per block; what it is decides the kernel. */
+
+/* The bits of each float. */
+SHI_INLINE shi_i shi_as_int(shi_v a) {
+    float lanes[SHI_LANES];
+    shi_store(lanes, a);
+    return shi_iload32(lanes);
+}
+
+/* log2 of normal a > 0, error < 3e-7 for a in [1/2, 1], else 1 ulp: a = 2^e m, m in [1, 2), and log2 m = 1/2 + 2 atanh(s) / ln 2 for
+ * s = (m - sqrt 2) / (m + sqrt 2), |s| < .172, by its series up to s^7. */
+SHI_INLINE shi_v shi_log2(shi_v a) {
+    const shi_i bits = shi_as_int(a);
+    const shi_v e = shi_to_float(shi_iadd(shi_shr(bits, 23), -127)), m = shi_as_float(shi_iadd(shi_iand(bits, 0x7fffff), 0x3f800000));
+    const shi_v root = shi_splat(1.41421356f); /* sqrt 2 */
+    const shi_v s = shi_div(shi_sub(m, root), shi_add(m, root)), s2 = shi_mul(s, s);
+    const float k = 2.88539008f; /* 2 / ln 2 */
+    shi_v sum = shi_madd(s2, shi_splat(k / 7.0f), shi_splat(k / 5.0f));
+    sum = shi_madd(s2, sum, shi_splat(k / 3.0f));
+    sum = shi_madd(s2, sum, shi_splat(k));
+    return shi_add(e, shi_madd(s, sum, shi_splat(0.5f)));
+}
+
+/* 2^a for a in [-126, 126], relative error < 3e-7: 2^n times the exponential series up to the sixth power, n the nearest integer, which
+ * the addition of 1.5 * 2^23 leaves in the low bits. */
+SHI_INLINE shi_v shi_exp2(shi_v a) {
+    const shi_i n = shi_iadd(shi_as_int(shi_add(a, shi_splat(12582912.0f))), -0x4b400000);
+    const shi_v f = shi_mul(shi_splat(0.693147181f), shi_sub(a, shi_to_float(n))); /* ln 2 */
+    shi_v sum = shi_madd(f, shi_splat(1.0f / 720.0f), shi_splat(1.0f / 120.0f));
+    sum = shi_madd(f, sum, shi_splat(1.0f / 24.0f));
+    sum = shi_madd(f, sum, shi_splat(1.0f / 6.0f));
+    sum = shi_madd(f, sum, shi_splat(0.5f));
+    sum = shi_madd(f, sum, shi_splat(1.0f));
+    sum = shi_madd(f, sum, shi_splat(1.0f));
+    return shi_mul(sum, shi_as_float(shi_shl(shi_iadd(n, 127), 23)));
+}
+
+/* q^p for q in [0, 1], p in [1, 3]: below 2^-42, where it is under 3e-13, q counts as 2^-42. */
+SHI_INLINE shi_v shi_power(shi_v q, shi_v p) {
+    return shi_exp2(shi_mul(p, shi_log2(shi_max(q, shi_splat(1.0f / 4398046511104.0f)))));
+}
+
+typedef struct shi_model {
+    shi_v scale, r1[3], r2[6], even[4];
+} shi_model;
+
+SHI_INLINE void shi_model_splat(const sh_closure *p, shi_model *m) {
+    m->scale = shi_splat(p->scale);
+    for (int i = 0; i < 3; i++)
+        m->r1[i] = shi_splat(p->r1[i]);
+    for (int i = 0; i < 6; i++)
+        m->r2[i] = shi_splat(p->r2[i]);
+    for (int i = 0; i < 4; i++)
+        m->even[i] = shi_splat(p->even[i]);
+}
+
+SHI_INLINE shi_v shi_dot_v(shi_v ax, shi_v ay, shi_v az, shi_v x, shi_v y, shi_v z) {
+    return shi_madd(ax, x, shi_madd(ay, y, shi_mul(az, z)));
+}
+
+/* scale times: the even part, clamped to [max(|v|, lower), sqrt(upper)], and v. */
+SHI_INLINE shi_v shi_clamped_v(const shi_model *m, shi_v v, shi_v even, shi_v lower, shi_v upper) {
+    const shi_v top = shi_sqrt(shi_max(upper, shi_splat(0.0f)));
+    return shi_mul(m->scale, shi_add(shi_max(shi_min(even, top), shi_max(shi_abs(v), lower)), v));
+}
+
+/* shi_evaluate_model, for a literal model. */
+SHI_INLINE shi_v shi_model_v(int model, const shi_model *m, shi_v x, shi_v y, shi_v z) {
+    const shi_v *k = m->even, *a = m->r2, v = shi_dot_v(m->r1[0], m->r1[1], m->r1[2], x, y, z), zero = shi_splat(0.0f);
+    if (model == SHI_GEOMERICS) {
+        const shi_v q = shi_max(shi_min(shi_add(v, shi_splat(0.5f)), shi_splat(1.0f)), zero);
+        return shi_mul(m->scale, shi_madd(k[1], shi_power(q, k[2]), k[0]));
+    }
+    if (model == SHI_ZH3)
+        return shi_max(zero, shi_mul(m->scale, shi_madd(v, shi_madd(k[2], v, k[1]), k[0])));
+    if (model == SHI_CLOSURE_L1 || model == SHI_CLOSURE_L1_BOUNDED) {
+        const shi_v t = shi_mul(v, v);
+        if (model == SHI_CLOSURE_L1)
+            return shi_mul(m->scale, shi_add(shi_madd(shi_madd(shi_add(t, k[2]), t, k[1]), t, k[0]), v));
+        const shi_v even = shi_madd(shi_madd(shi_madd(shi_splat(3003.0f / 65536.0f), t, k[2]), t, k[1]), t, k[0]);
+        return shi_clamped_v(m, v, even, zero, shi_add(k[3], t));
+    }
+    const shi_v ax = shi_dot_v(a[0], a[1], a[2], x, y, z), ay = shi_dot_v(a[1], a[3], a[4], x, y, z);
+    const shi_v az = shi_dot_v(a[2], a[4], a[5], x, y, z), q = shi_dot_v(ax, ay, az, x, y, z);
+    if (model == SHI_LINEAR)
+        return shi_max(zero, shi_add(shi_add(k[0], v), q));
+    const shi_v aa = shi_dot_v(ax, ay, az, ax, ay, az), m2 = shi_madd(shi_splat(2.0f), q, k[3]);
+    const shi_v outer = shi_madd(shi_splat(-819.0f / 256.0f), q, shi_splat(15.0f / 16.0f));
+    const shi_v inner = shi_madd(shi_madd(shi_splat(3003.0f / 1024.0f), q, shi_splat(-105.0f / 64.0f)), q, k[1]);
+    return shi_clamped_v(m, v, shi_madd(aa, outer, shi_madd(q, inner, k[0])), m2, shi_mul(k[2], m2));
+}
+
+SHI_INLINE void shi_model_loop(int model, const sh_closure *p, const float *x, const float *y, const float *z, float *out,
+                               size_t count) {
+    shi_model m;
+    shi_model_splat(p, &m);
+    for (size_t i = 0; i < count; i += SHI_LANES)
+        shi_store(out + i, shi_model_v(model, &m, shi_load(x + i), shi_load(y + i), shi_load(z + i)));
+}
+
+/* One channel of `count` normals, a multiple of SHI_LANES. */
+SHI_FUNCTION void shi_model_run(const sh_closure *p, const float *x, const float *y, const float *z, float *out, size_t count) {
+    switch (p->model) {
+    case SHI_CLOSURE_L1: shi_model_loop(SHI_CLOSURE_L1, p, x, y, z, out, count); break;
+    case SHI_CLOSURE_L1_BOUNDED: shi_model_loop(SHI_CLOSURE_L1_BOUNDED, p, x, y, z, out, count); break;
+    case SHI_CLOSURE_L2: shi_model_loop(SHI_CLOSURE_L2, p, x, y, z, out, count); break;
+    case SHI_GEOMERICS: shi_model_loop(SHI_GEOMERICS, p, x, y, z, out, count); break;
+    case SHI_ZH3: shi_model_loop(SHI_ZH3, p, x, y, z, out, count); break;
+    default: shi_model_loop(SHI_LINEAR, p, x, y, z, out, count); break;
+    }
+}
+
+/* Where a batch's models come from: prepared by the caller; or coefficients, prepared once where there are few channels, else as
+ * each block needs them. */
+typedef struct shi_source {
+    int order, family, channels;
+    const float *c;
+    const sh_closure *prepared;
+    sh_closure kept[SH_MAX_CHANNELS];
+} shi_source;
+
+enum { SHI_FAMILY_CLOSURE, SHI_FAMILY_GEOMERICS, SHI_FAMILY_ZH3 };
+
+SHI_INLINE void shi_source_prepare(const shi_source *s, int channel, sh_closure *out) {
+    const float *c = s->c + channel * SH_COUNT(s->order);
+    if (s->family == SHI_FAMILY_GEOMERICS)
+        shi_prepare_geomerics(c, out);
+    else if (s->family == SHI_FAMILY_ZH3)
+        shi_prepare_zh3(c, out);
+    else
+        shi_prepare_closure(s->order, c, 0, out);
+}
+
+SHI_INLINE void shi_source_init(int order, int family, int channels, const float *c, const sh_closure *prepared, shi_source *s) {
+    s->order = order;
+    s->family = family;
+    s->channels = channels;
+    s->c = c;
+    s->prepared = prepared;
+    if (!prepared && channels <= SH_MAX_CHANNELS) {
+        for (int k = 0; k < channels; k++)
+            shi_source_prepare(s, k, s->kept + k);
+        s->prepared = s->kept;
+    }
+}
+
+SHI_INLINE const sh_closure *shi_source_get(const shi_source *s, int channel, sh_closure *scratch) {
+    if (s->prepared)
+        return s->prepared + channel;
+    shi_source_prepare(s, channel, scratch);
+    return scratch;
+}
+
+SHI_INLINE void shi_models_soa(const shi_source *source, const float *x, const float *y, const float *z, float *out, size_t count) {
+    const size_t total = (size_t)source->channels * count;
+    const int copy = shi_overlap(x, count, out, total) || shi_overlap(y, count, out, total) || shi_overlap(z, count, out, total);
+    for (size_t i = 0; i < count; i += SHI_BATCH) {
+        const size_t n = shi_at_most(count - i, SHI_BATCH), whole = copy ? 0 : n / SHI_LANES * SHI_LANES, rest = n - whole;
+        shi_block block;
+        if (rest) {
+            shi_copy_padded(x + i + whole, rest, block.x);
+            shi_copy_padded(y + i + whole, rest, block.y);
+            shi_copy_padded(z + i + whole, rest, block.z);
+        }
+        for (int k = 0; k < source->channels; k++) {
+            sh_closure scratch;
+            const sh_closure *p = shi_source_get(source, k, &scratch);
+            float *to = out + (size_t)k * count + i;
+            if (whole)
+                shi_model_run(p, x + i, y + i, z + i, to, whole);
+            if (rest) {
+                shi_model_run(p, block.x, block.y, block.z, block.out, shi_round_up(rest));
+                memcpy(to + whole, block.out, rest * sizeof *to);
+            }
+        }
+    }
+}
+
+SHI_INLINE void shi_models_aos(const shi_source *source, const float *n, size_t n_stride, float *out, size_t out_stride, size_t count) {
+    const size_t in_step = n_stride ? n_stride : 3 * sizeof *n;
+    const size_t out_step = out_stride ? out_stride : (size_t)source->channels * sizeof *out;
+    for (size_t i = 0; i < count; i += SHI_BATCH) {
+        const size_t some = shi_at_most(count - i, SHI_BATCH);
+        const unsigned char *in = (const unsigned char *)n + i * in_step;
+        unsigned char *to = (unsigned char *)out + i * out_step;
+        shi_block block;
+        for (size_t j = 0; j < shi_round_up(some); j++) {
+            float d[3] = { 0.0f, 0.0f, 0.0f };
+            if (j < some)
+                memcpy(d, in + j * in_step, sizeof d);
+            block.x[j] = d[0];
+            block.y[j] = d[1];
+            block.z[j] = d[2];
+        }
+        for (int k = 0; k < source->channels; k++) {
+            sh_closure scratch;
+            shi_model_run(shi_source_get(source, k, &scratch), block.x, block.y, block.z, block.out, shi_round_up(some));
+            for (size_t j = 0; j < some; j++)
+                memcpy(to + j * out_step + (size_t)k * sizeof *out, block.out + j, sizeof *out);
+        }
+    }
+}
+
+SHI_INLINE void sh_irradiance_closure_batch(int order, int channels, const float *c, const float *x, const float *y, const float *z,
+                                            float *out, size_t count) {
+    shi_source source;
+    shi_source_init(order, SHI_FAMILY_CLOSURE, channels, c, NULL, &source);
+    shi_models_soa(&source, x, y, z, out, count);
+}
+
+SHI_INLINE void sh_closure_irradiance_batch(int order, int channels, const sh_closure *closure, const float *x, const float *y,
+                                            const float *z, float *out, size_t count) {
+    shi_source source;
+    shi_source_init(order, SHI_FAMILY_CLOSURE, channels, NULL, closure, &source);
+    shi_models_soa(&source, x, y, z, out, count);
+}
+
+SHI_INLINE void sh_irradiance_geomerics_batch(int order, int channels, const float *c, const float *x, const float *y, const float *z,
+                                              float *out, size_t count) {
+    shi_source source;
+    shi_source_init(order, SHI_FAMILY_GEOMERICS, channels, c, NULL, &source);
+    shi_models_soa(&source, x, y, z, out, count);
+}
+
+SHI_INLINE void sh_irradiance_zh3_batch(int order, int channels, const float *c, const float *x, const float *y, const float *z,
+                                        float *out, size_t count) {
+    shi_source source;
+    shi_source_init(order, SHI_FAMILY_ZH3, channels, c, NULL, &source);
+    shi_models_soa(&source, x, y, z, out, count);
+}
+
+SHI_INLINE void sh_irradiance_closure_batch_aos(int order, int channels, const float *c, const float *n, size_t n_stride, float *out,
+                                                size_t out_stride, size_t count) {
+    shi_source source;
+    shi_source_init(order, SHI_FAMILY_CLOSURE, channels, c, NULL, &source);
+    shi_models_aos(&source, n, n_stride, out, out_stride, count);
+}
+
+SHI_INLINE void sh_closure_irradiance_batch_aos(int order, int channels, const sh_closure *closure, const float *n, size_t n_stride,
+                                                float *out, size_t out_stride, size_t count) {
+    shi_source source;
+    shi_source_init(order, SHI_FAMILY_CLOSURE, channels, NULL, closure, &source);
+    shi_models_aos(&source, n, n_stride, out, out_stride, count);
+}
+
+SHI_INLINE void sh_irradiance_geomerics_batch_aos(int order, int channels, const float *c, const float *n, size_t n_stride, float *out,
+                                                  size_t out_stride, size_t count) {
+    shi_source source;
+    shi_source_init(order, SHI_FAMILY_GEOMERICS, channels, c, NULL, &source);
+    shi_models_aos(&source, n, n_stride, out, out_stride, count);
+}
+
+SHI_INLINE void sh_irradiance_zh3_batch_aos(int order, int channels, const float *c, const float *n, size_t n_stride, float *out,
+                                            size_t out_stride, size_t count) {
+    shi_source source;
+    shi_source_init(order, SHI_FAMILY_ZH3, channels, c, NULL, &source);
+    shi_models_aos(&source, n, n_stride, out, out_stride, count);
+}
 #endif /* SH_NO_BATCH */
 
 #endif /* SH_H */
