@@ -70,7 +70,7 @@ static const char *const channel_name[2][3] = { { "grey", "", "" }, { "red", "gr
 static void print_channels(const char *label, const float *value, int channels) {
     printf("%-18s", label);
     for (int k = 0; k < channels; k++)
-        printf(" %15.8g", (double)value[k]);
+        printf(" %15.9g", (double)value[k]);
     putchar('\n');
 }
 
@@ -265,7 +265,7 @@ static int load(const options *o, scene *s) {
     }
     if (!error)
         error = scene_project(s);
-    return error ? fail(o, STATUS_BAD_INPUT, "%s: %s", s->name, error) : STATUS_OK;
+    return error ? fail(o, o->panorama ? STATUS_BAD_INPUT : STATUS_FAILED, "%s: %s", s->name, error) : STATUS_OK;
 }
 
 static int save(const options *o, const scene *s) {

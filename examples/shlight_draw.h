@@ -240,7 +240,7 @@ static void shlight_glyph_lines(char c, shlight_lines *lines) {
     lines->count = 0;
     lines->width = 0.0f;
     while (*text) {
-        float control[2], point[2];
+        float control[2] = { 0.0f, 0.0f }, point[2];
         const char command = *text;
         if (command == 'q')
             shlight_read_point(text + 1, control);
@@ -264,7 +264,8 @@ static float shlight_distance(const float p[2], const float a[2], const float b[
     const float square = ab[0] * ab[0] + ab[1] * ab[1];
     float t = square > 0.0f ? (ap[0] * ab[0] + ap[1] * ab[1]) / square : 0.0f;
     t = t < 0.0f ? 0.0f : t > 1.0f ? 1.0f : t;
-    return hypotf(ap[0] - t * ab[0], ap[1] - t * ab[1]);
+    const float dx = ap[0] - t * ab[0], dy = ap[1] - t * ab[1];
+    return sqrtf(dx * dx + dy * dy);
 }
 
 /* Size of text: the height of capitals, in texels. Letters are a little wider than their grid. */

@@ -9,6 +9,7 @@
 #ifndef SHLIGHT_IMAGE_H
 #define SHLIGHT_IMAGE_H
 
+#include <float.h>
 #include <math.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -250,7 +251,7 @@ static const char *shlight_hdr_pixels(shlight_bytes *in, const shlight_scan *sca
     for (int k = 0; k < 3; k++) {
         scale[k][0] = 0.0f;
         for (int i = 1; i < 256; i++)
-            scale[k][i] = (float)(ldexp(1.0, i - 136) / (double)exposure[k]);
+            scale[k][i] = (float)fmin(ldexp(1.0, i - 136) / (double)exposure[k], (double)FLT_MAX);
     }
     for (int i = 0; i < scan->scanlines; i++) {
         const char *error = shlight_hdr_scanline(in, rgbe, scan->pixels);

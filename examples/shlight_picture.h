@@ -38,7 +38,7 @@ typedef struct sphere {
     int mirror[DISC];  /* the texel as far from the bottom: seen from the back, its normal is the opposite */
     float cover[DISC]; /* less than 1 on the edge */
     float normal[2][DISC][3];
-    float truth[2][3][DISC]; /* irradiance / pi by brute force */
+    float truth[2][DISC][3]; /* irradiance / pi by brute force */
     float front[3];          /* horizontal, towards who sees view 0 */
 } sphere;
 
@@ -56,7 +56,7 @@ static void sphere_face_light(const scene *s, sphere *ball) {
 
 /* The normal at (right, up) in the unit disc, on the side of view 0 or 1; outside it, that of the silhouette. */
 static void sphere_normal(const sphere *ball, int view, float right, float up, float n[3]) {
-    const float distance = hypotf(right, up), shrink = distance > 1.0f ? 1.0f / distance : 1.0f;
+    const float distance = sqrtf(right * right + up * up), shrink = distance > 1.0f ? 1.0f / distance : 1.0f;
     const float r = right * shrink, u = up * shrink, toward = sqrtf(fmaxf(0.0f, 1.0f - r * r - u * u));
     const float side = view == 0 ? 1.0f : -1.0f, fx = side * ball->front[0], fy = side * ball->front[1];
     n[0] = toward * fx - r * fy;
@@ -82,12 +82,10 @@ static void sphere_init(const scene *s, sphere *ball) {
     }
     for (int i = 0; i < ball->count; i++)
         ball->mirror[i] = at[(DIAMETER - 1 - ball->y[i]) * DIAMETER + ball->x[i]];
-    for (int k = 0; k < s->image.channels; k++) {
-        shlight_irradiance(s->coarse, k, (const float(*)[3])ball->normal[0], (size_t)ball->count, ball->truth[0][k]);
-        for (int i = 0; i < ball->count; i++) {
-            const int opposite = ball->mirror[i];
-            ball->truth[1][k][opposite] = shlight_irradiance_opposite(s->coarse, k, ball->normal[0][i], ball->truth[0][k][i]);
-        }
+    for (int i = 0; i < ball->count; i++) {
+        const float *n = ball->normal[0][i];
+        shlight_irradiance(s->blocks, n, ball->truth[0][i]);
+        shlight_irradiance_opposite(s->blocks, n, ball->truth[0][i], ball->truth[1][ball->mirror[i]]);
     }
 }
 
@@ -113,10 +111,8 @@ static shlight_colour paint_lit(const scene *s, const float *rgb) {
 }
 
 static void draw_truth(shlight_canvas *canvas, const scene *s, const sphere *ball, int view, int left, int top) {
-    for (int i = 0; i < ball->count; i++) {
-        const float rgb[3] = { ball->truth[view][0][i], ball->truth[view][1][i], ball->truth[view][2][i] };
-        shlight_blend(canvas, left + ball->x[i], top + ball->y[i], paint_lit(s, rgb), ball->cover[i]);
-    }
+    for (int i = 0; i < ball->count; i++)
+        shlight_blend(canvas, left + ball->x[i], top + ball->y[i], paint_lit(s, ball->truth[view][i]), ball->cover[i]);
 }
 
 /* A model's irradiance: four samples a texel, for the edge of what is below zero. */
@@ -145,7 +141,7 @@ static void draw_error(shlight_canvas *canvas, const scene *s, const sphere *bal
         float worst = 0.0f;
         for (int k = 0; k < s->image.channels; k++) {
             const float estimate = m->evaluate(&state[k], ball->normal[view][i]);
-            worst = fmaxf(worst, fabsf(estimate - ball->truth[view][k][i]));
+            worst = fmaxf(worst, fabsf(estimate - ball->truth[view][i][k]));
         }
         shlight_blend(canvas, left + ball->x[i], top + ball->y[i], shlight_heat(sqrtf(worst)), ball->cover[i]);
     }

@@ -11,7 +11,7 @@
 
 /* ---- Deflate -------------------------------------------------------------------------------------------------------------------- */
 
-enum { SHLIGHT_WINDOW = 32768, SHLIGHT_MIN_MATCH = 3, SHLIGHT_MAX_MATCH = 258, SHLIGHT_CHAIN = 48, SHLIGHT_NONE = -1 };
+enum { SHLIGHT_WINDOW = 32768, SHLIGHT_MIN_MATCH = 3, SHLIGHT_MAX_MATCH = 258, SHLIGHT_CHAIN = 16, SHLIGHT_NONE = -1 };
 
 typedef struct shlight_bits {
     unsigned char *at;

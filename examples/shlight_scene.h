@@ -37,9 +37,9 @@ typedef struct scene {
     double unit[3];                      /* R0 of each channel; 1 for a black one */
     float relative[3 * SH_COUNT(SH_L2)]; /* c / unit */
     float weight[3];                     /* R0 of each channel over the greatest: from units to what is seen */
-    shlight_blocks *blocks, *coarse;     /* for numbers, and for pictures: half the columns */
+    shlight_blocks *blocks;              /* the brute force */
     float (*normal)[3];                  /* NORMALS, evenly spread */
-    float *truth;                        /* NORMALS for each channel */
+    float (*truth)[3];                   /* of each normal, all channels */
     float brightest;                     /* the largest truth, weighted */
     const model *models;                 /* those to compare, of this order or less */
     model_error *error;                  /* of each */
@@ -49,7 +49,6 @@ typedef struct scene {
 static void scene_free(scene *s) {
     free(s->image.pixels);
     free(s->blocks);
-    free(s->coarse);
     free(s->normal);
     free(s->truth);
     free(s->error);
@@ -71,7 +70,7 @@ static model_error measure_model(const scene *s, const model *m) {
         scene_prepare(s, m, k, &state);
         for (int i = 0; i < NORMALS; i++) {
             const double estimate = (double)m->evaluate(&state, s->normal[i]);
-            const double error = estimate - (double)s->truth[k * NORMALS + i];
+            const double error = estimate - (double)s->truth[i][k];
             e.rms += error * error;
             e.max = fmax(e.max, fabs(error));
             e.lowest = fmin(e.lowest, estimate);
@@ -129,29 +128,25 @@ static void scene_true_irradiance(scene *s) {
         sh_direction_fibonacci((uint32_t)i, (uint32_t)half, s->normal[i]);
         for (int axis = 0; axis < 3; axis++)
             s->normal[half + i][axis] = -s->normal[i][axis];
-    }
-    for (int k = 0; k < s->image.channels; k++) {
-        float *truth = s->truth + k * NORMALS;
-        shlight_irradiance(s->blocks, k, (const float(*)[3])s->normal, (size_t)half, truth);
-        for (int i = 0; i < half; i++)
-            truth[half + i] = shlight_irradiance_opposite(s->blocks, k, s->normal[i], truth[i]);
+        shlight_irradiance(s->blocks, s->normal[i], s->truth[i]);
+        shlight_irradiance_opposite(s->blocks, s->normal[i], s->truth[i], s->truth[half + i]);
     }
 }
 
 /* Compares the models with brute force. -1: not enough memory. */
 static int scene_measure(scene *s) {
     const double scale[3] = { 1.0 / s->unit[0], 1.0 / s->unit[1], 1.0 / s->unit[2] };
-    s->blocks = shlight_blocks_new(&s->image, SHLIGHT_MAX_COLUMNS, scale);
-    s->coarse = shlight_blocks_new(&s->image, SHLIGHT_MAX_COLUMNS / 2, scale);
+    s->blocks = shlight_blocks_new(&s->image, scale);
     s->normal = (float(*)[3])malloc(NORMALS * sizeof *s->normal);
-    s->truth = (float *)malloc((size_t)s->image.channels * NORMALS * sizeof *s->truth);
+    s->truth = (float(*)[3])malloc(NORMALS * sizeof *s->truth);
     s->error = (model_error *)malloc((size_t)s->model_count * sizeof *s->error);
-    if (!s->blocks || !s->coarse || !s->normal || !s->truth || !s->error)
+    if (!s->blocks || !s->normal || !s->truth || !s->error)
         return -1;
     scene_true_irradiance(s);
     s->brightest = 0.0f;
-    for (int i = 0; i < s->image.channels * NORMALS; i++)
-        s->brightest = fmaxf(s->brightest, s->weight[i / NORMALS] * s->truth[i]);
+    for (int i = 0; i < NORMALS; i++)
+        for (int k = 0; k < s->image.channels; k++)
+            s->brightest = fmaxf(s->brightest, s->weight[k] * s->truth[i][k]);
     for (int i = 0; i < s->model_count; i++)
         s->error[i] = measure_model(s, &s->models[i]);
     return 0;

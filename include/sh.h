@@ -1753,15 +1753,19 @@ SHI_INLINE void shi_store_fours(unsigned char *p, size_t stride, int n, shi_v v)
 
 #if SHI_LANES > 1
 SHI_INLINE void shi_load4(const unsigned char *p, size_t stride, shi_v v[4]) {
-    for (int i = 0; i < 4; i++)
-        v[i] = shi_load_fours(p + (size_t)i * stride, 4 * stride);
+    v[0] = shi_load_fours(p, 4 * stride);
+    v[1] = shi_load_fours(p + stride, 4 * stride);
+    v[2] = shi_load_fours(p + 2 * stride, 4 * stride);
+    v[3] = shi_load_fours(p + 3 * stride, 4 * stride);
     shi_transpose4(v);
 }
 SHI_INLINE void shi_store4(unsigned char *p, size_t stride, int n, const shi_v v[4]) {
     shi_v r[4] = { v[0], v[1], v[2], v[3] };
     shi_transpose4(r);
-    for (int i = 0; i < 4; i++)
-        shi_store_fours(p + (size_t)i * stride, 4 * stride, n, r[i]);
+    shi_store_fours(p, 4 * stride, n, r[0]);
+    shi_store_fours(p + stride, 4 * stride, n, r[1]);
+    shi_store_fours(p + 2 * stride, 4 * stride, n, r[2]);
+    shi_store_fours(p + 3 * stride, 4 * stride, n, r[3]);
 }
 #endif
 
@@ -1779,7 +1783,7 @@ SHI_INLINE shi_i shi_iload_bytes(const unsigned char *p) {
  * Both reconstructions are one quadratic polynomial in x, y, z. With z^2 = 1 - x^2 - y^2 taken out, it has one coefficient per SH
  * coefficient, and a nested form costs one fused multiply-add for each but the first: the least possible. */
 
-enum { SHI_BATCH = 512 }; /* directions per block: their coordinates stay in the first-level cache while the channels go by */
+enum { SHI_BATCH = 1024 }; /* directions per block: their coordinates stay in the first-level cache while the channels go by */
 
 enum { SHI_1, SHI_X, SHI_Y, SHI_Z, SHI_XX, SHI_XY, SHI_XZ, SHI_YY, SHI_YZ };
 
@@ -1946,21 +1950,26 @@ SHI_INLINE void shi_evaluate_aos_blocks(int order, const shi_aos *job, size_t fi
     }
 }
 
-/* Up to four channels go straight from item to item, transposed in registers. load4 reads one float past a direction, so the last
- * vector is left to the blocks. Returns how many items are done. */
-SHI_INLINE size_t shi_evaluate_aos_lanes(int order, int channels, const shi_aos *job) {
-    shi_v p[4][SH_COUNT(SH_L2)], d[4], v[4] = { shi_splat(0), shi_splat(0), shi_splat(0), shi_splat(0) };
+/* Three channels go straight from item to item, transposed in registers. load4 reads one float past a direction, so the last vector
+ * is left to the blocks. Returns how many items are done. */
+SHI_INLINE size_t shi_evaluate_aos_rgb(int order, const shi_aos *job) {
+    const size_t in_stride = job->in_stride, out_stride = job->out_stride, count = job->count;
+    const unsigned char *in = job->in;
+    unsigned char *out = job->out;
+    shi_v p[3][SH_COUNT(SH_L2)], d[4], v[4];
     size_t i = 0;
-    for (int k = 0; k < channels; k++) {
+    for (int k = 0; k < 3; k++) {
         float polynomial[SH_COUNT(SH_L2)];
         shi_polynomial_fold(order, job->c + k * SH_COUNT(order), job->w1, job->w2, polynomial);
         shi_splat_all(order, polynomial, p[k]);
     }
-    for (; job->count - i > SHI_LANES; i += SHI_LANES) {
-        shi_load4(job->in + i * job->in_stride, job->in_stride, d);
-        for (int k = 0; k < channels; k++)
-            v[k] = shi_polynomial(order, p[k], d[0], d[1], d[2]);
-        shi_store4(job->out + i * job->out_stride, job->out_stride, channels, v);
+    for (; count - i > SHI_LANES; i += SHI_LANES) {
+        shi_load4(in + i * in_stride, in_stride, d);
+        v[0] = shi_polynomial(order, p[0], d[0], d[1], d[2]);
+        v[1] = shi_polynomial(order, p[1], d[0], d[1], d[2]);
+        v[2] = shi_polynomial(order, p[2], d[0], d[1], d[2]);
+        v[3] = v[2];
+        shi_store4(out + i * out_stride, out_stride, 3, v);
     }
     return i;
 }
@@ -1968,7 +1977,7 @@ SHI_INLINE size_t shi_evaluate_aos_lanes(int order, int channels, const shi_aos 
 SHI_INLINE void shi_evaluate_aos(int order, const shi_aos *job) {
     size_t done = 0;
     if (job->channels == 3 && job->count)
-        done = shi_evaluate_aos_lanes(order, 3, job);
+        done = shi_evaluate_aos_rgb(order, job);
     shi_evaluate_aos_blocks(order, job, done);
 }
 
@@ -2205,10 +2214,11 @@ SHI_INLINE int sh_project_samples(int order, int channels, const float *x, const
 }
 
 /* ---- Images ---------------------------------------------------------------------------------------------------------------------
- * Rows are read in blocks of SHI_BLOCK pixels: in place where they are clean floats, decoded to floats otherwise; a last partial
- * block is padded with black. Float vectors add up a row, doubles the rows. */
+ * Rows are read in blocks of up to SHI_BLOCK pixels: in place where they are clean floats, decoded to floats otherwise, padded with
+ * black to whole vectors. Float vectors add up a group of SHI_GROUP rows, doubles the groups. Interleaved channels stay so: vectors
+ * repeat their channels every `phases`. */
 
-enum { SHI_BLOCK = 128, SHI_PHASES = 4 };
+enum { SHI_BLOCK = 128, SHI_PHASES = 4, SHI_GROUP = 16 };
 
 /* How texels lie in memory, and in the blocks that the kernels read: `planes` planes of `interleave` interleaved channels. */
 typedef struct shi_layout {
@@ -2254,6 +2264,7 @@ typedef struct shi_reader {
     shi_layout layout;
     size_t stride;
     unsigned flags;
+    int look_for_negative;
     int careful;     /* look at every value: leave out, clamp, count in `report` */
     float scale;     /* what careful reading multiplies values by: below 1 if their sum overflows */
     sh_report report;
@@ -2275,13 +2286,14 @@ SHI_FUNCTION float shi_srgb_to_linear(int byte) {
 }
 
 /* Checks the image as well. */
-SHI_FUNCTION int shi_reader_init(const sh_image *image, unsigned flags, shi_reader *reader) {
+SHI_FUNCTION int shi_reader_init(const sh_image *image, unsigned flags, const sh_report *report, shi_reader *reader) {
     const int status = shi_image_check(image, &reader->layout);
     if (status != SH_OK)
         return status;
     reader->image = image;
     reader->stride = image->row_stride ? image->row_stride : (size_t)image->width * reader->layout.pixel_size;
     reader->flags = flags;
+    reader->look_for_negative = (report || flags & SH_CLAMP_NEGATIVE) && (image->format == SH_F32 || image->format == SH_F16);
     reader->careful = 0;
     reader->scale = 1.0f;
     reader->report.texels = reader->report.nonfinite = reader->report.negative = 0;
@@ -2312,16 +2324,16 @@ SHI_INLINE void shi_unpack_rgb(shi_i word, int bits, shi_v scale, float *out) {
         shi_store(out + k * SHI_BLOCK, shi_mul(shi_to_float(shi_iand(shi_shr(word, k * bits), (1 << bits) - 1)), scale));
 }
 
-SHI_INLINE void shi_decode_rgbe8(const unsigned char *in, float *out) {
-    for (int i = 0; i < SHI_BLOCK; i += SHI_LANES) {
+SHI_INLINE void shi_decode_rgbe8(const unsigned char *in, int count, float *out) {
+    for (int i = 0; i < count; i += SHI_LANES) {
         const shi_i word = shi_iload_bytes(in + 4 * i), e = shi_shr(word, 24);
         const shi_v scale = shi_as_float(shi_shl(shi_iadd(e, -9), 23)); /* 2^(e - 136) */
         shi_unpack_rgb(word, 8, shi_select(shi_less(shi_to_float(e), shi_splat(10.0f)), shi_splat(0.0f), scale), out + i);
     }
 }
 
-SHI_INLINE void shi_decode_rgb9e5(const unsigned char *in, float *out) {
-    for (int i = 0; i < SHI_BLOCK; i += SHI_LANES) {
+SHI_INLINE void shi_decode_rgb9e5(const unsigned char *in, int count, float *out) {
+    for (int i = 0; i < count; i += SHI_LANES) {
         const shi_i word = shi_iload32(in + 4 * i);
         shi_unpack_rgb(word, 9, shi_as_float(shi_shl(shi_iadd(shi_shr(word, 27), 103), 23)), out + i); /* 2^(e - 24) */
     }
@@ -2356,19 +2368,20 @@ SHI_FUNCTION void shi_clean(shi_reader *reader, int count, float *pixels) {
     }
 }
 
-/* Pixels x to x + count of a row, count <= SHI_BLOCK, as a block of floats, padded with black: in place or in `scratch`. */
+/* What a block of pixels is copied or decoded to. */
 typedef struct shi_scratch {
     unsigned char raw[SHI_BLOCK * 16];
     float decoded[SHI_BLOCK * 4];
 } shi_scratch;
 
-SHI_FUNCTION const unsigned char *shi_read_block(shi_reader *reader, int row, int x, int count, shi_scratch *scratch) {
+/* Pixels x to x + count of a row as floats, padded with black to `padded` pixels, a multiple of SHI_LANES, both <= SHI_BLOCK. */
+SHI_FUNCTION const unsigned char *shi_read_block(shi_reader *reader, int row, int x, int count, int padded, shi_scratch *scratch) {
     const size_t size = reader->layout.pixel_size;
     const unsigned char *in = (const unsigned char *)reader->image->pixels + (size_t)row * reader->stride + (size_t)x * size;
-    const int values = SHI_BLOCK * reader->layout.interleave;
-    if (count < SHI_BLOCK) {
-        memset(scratch->raw, 0, SHI_BLOCK * size);
+    const int values = padded * reader->layout.interleave;
+    if (count < padded) {
         memcpy(scratch->raw, in, (size_t)count * size);
+        memset(scratch->raw + (size_t)count * size, 0, (size_t)(padded - count) * size);
         in = scratch->raw;
     }
     switch (reader->image->format) {
@@ -2378,8 +2391,8 @@ SHI_FUNCTION const unsigned char *shi_read_block(shi_reader *reader, int row, in
         memcpy(scratch->decoded, in, (size_t)values * sizeof(float));
         break;
     case SH_F16: shi_decode_f16(in, values, scratch->decoded); break;
-    case SH_RGBE8: shi_decode_rgbe8(in, scratch->decoded); break;
-    case SH_RGB9E5: shi_decode_rgb9e5(in, scratch->decoded); break;
+    case SH_RGBE8: shi_decode_rgbe8(in, padded, scratch->decoded); break;
+    case SH_RGB9E5: shi_decode_rgb9e5(in, padded, scratch->decoded); break;
     case SH_SRGB8: shi_decode_srgb8(in, reader->srgb, values, scratch->decoded); break;
     }
     if (reader->careful && reader->layout.planes == 1)
@@ -2392,41 +2405,52 @@ SHI_FUNCTION const unsigned char *shi_read_block(shi_reader *reader, int row, in
  * functions up to sign, so they are folded first. Within a block p is counted from the block's first column: all blocks share one
  * small table, and their sums are turned to the block's azimuth. */
 
-enum { SHI_SUM, SHI_COS1, SHI_SIN1, SHI_COS2, SHI_SIN2, SHI_SUMS };
+enum { SHI_SUM, SHI_COS1, SHI_SIN1, SHI_COS2, SHI_SIN2, SHI_SUMS, SHI_MOMENTS = 9 };
 
 typedef struct shi_fold_sums {
     shi_v sum, cos1, sin1, cos2, sin2;
 } shi_fold_sums;
 
-/* Functions of the columns of a block, one per float: cos p, sin p, cos 2p, sin 2p. */
-typedef struct shi_azimuth_table {
-    float cos1[SHI_BLOCK * 4], sin1[SHI_BLOCK * 4], cos2[SHI_BLOCK * 4], sin2[SHI_BLOCK * 4];
-} shi_azimuth_table;
+/* What depends on a panorama's columns only: vectors of cos p, sin p, cos 2p, sin 2p for each vector of a block's columns, side by
+ * side (four arrays a power of two apart would compete for the same cache lines); the angle of a block; and the factor that makes a
+ * row's sum of frequency 0, 1, 2 a mean over azimuth. */
+typedef struct shi_columns {
+    float table[SHI_BLOCK * 4 * 4];
+    double block_cos, block_sin, mean[3];
+} shi_columns;
 
-SHI_FUNCTION void shi_azimuth_table_init(int width, int interleave, shi_azimuth_table *table) {
-    for (int i = 0; i < SHI_BLOCK; i++) {
-        const double p = 2.0 * SHI_PI * (i + 0.5) / width, c = cos(p), s = sin(p);
+SHI_FUNCTION void shi_columns_init(int width, int interleave, int point, shi_columns *columns) {
+    const double step = 2.0 * SHI_PI / width;
+    for (int i = 0; i < SHI_BLOCK && i < width; i++) {
+        const double c = cos((i + 0.5) * step), s = sin((i + 0.5) * step);
         for (int j = i * interleave; j < (i + 1) * interleave; j++) {
-            table->cos1[j] = (float)c;
-            table->sin1[j] = (float)s;
-            table->cos2[j] = (float)(c * c - s * s);
-            table->sin2[j] = (float)(2.0 * c * s);
+            float *t = columns->table + j / SHI_LANES * 4 * SHI_LANES + j % SHI_LANES;
+            t[0] = (float)c;
+            t[SHI_LANES] = (float)s;
+            t[2 * SHI_LANES] = (float)(c * c - s * s);
+            t[3 * SHI_LANES] = (float)(2.0 * c * s);
         }
     }
+    columns->block_cos = cos((double)SHI_BLOCK * step);
+    columns->block_sin = sin((double)SHI_BLOCK * step);
+    /* A texel's width smears frequency k by sinc(k pi / width). Points see none of a frequency that is constant on all columns. */
+    columns->mean[0] = 1.0 / width;
+    columns->mean[1] = (point ? width > 1 : sin(0.5 * step) / (0.5 * step)) / width;
+    columns->mean[2] = (point ? width > 2 : sin(step) / step) / width;
 }
 
 /* Adds a vector of texels and the one half a turn further. */
-SHI_INLINE void shi_fold_add(int order, shi_v here, shi_v opposite, const shi_azimuth_table *table, int i, shi_fold_sums *s) {
+SHI_INLINE void shi_fold_add(int order, shi_v here, shi_v opposite, const float *table, shi_fold_sums *s) {
     const shi_v even = shi_add(here, opposite);
     s->sum = shi_add(s->sum, even);
     if (order >= SH_L1) {
         const shi_v odd = shi_sub(here, opposite);
-        s->cos1 = shi_madd(odd, shi_load(table->cos1 + i), s->cos1);
-        s->sin1 = shi_madd(odd, shi_load(table->sin1 + i), s->sin1);
+        s->cos1 = shi_madd(odd, shi_load(table), s->cos1);
+        s->sin1 = shi_madd(odd, shi_load(table + SHI_LANES), s->sin1);
     }
     if (order >= SH_L2) {
-        s->cos2 = shi_madd(even, shi_load(table->cos2 + i), s->cos2);
-        s->sin2 = shi_madd(even, shi_load(table->sin2 + i), s->sin2);
+        s->cos2 = shi_madd(even, shi_load(table + 2 * SHI_LANES), s->cos2);
+        s->sin2 = shi_madd(even, shi_load(table + 3 * SHI_LANES), s->sin2);
     }
 }
 
@@ -2450,44 +2474,36 @@ SHI_INLINE int shi_phases(int interleave) {
     return SHI_LANES == 1 ? interleave : interleave == 3 ? 3 : 1;
 }
 
-/* Float sums of two rows; vectors of interleaved channels repeat every `phases`. */
-typedef struct shi_row_sums {
-    shi_v total[2][SHI_PHASES][SHI_SUMS];
-    shi_v signs;
-} shi_row_sums;
+/* Float sums of a group of rows: each of the moments of SHI_MOMENTS, by phase. */
+typedef struct shi_group {
+    shi_v moment[SHI_PHASES][SHI_MOMENTS];
+    shi_v signs; /* the sign bits of all values read, where they are asked for */
+} shi_group;
 
-/* Adds a block of two rows: here[r] and, half a turn further, opposite[r]. `first` is the plane's first phase. */
+/* The sign bits of `count` floats, a multiple of SHI_LANES. */
+SHI_INLINE shi_v shi_signs(const unsigned char *in, int count) {
+    shi_v signs = shi_splat(0.0f);
+    for (int i = 0; i < count; i += SHI_LANES)
+        signs = shi_or(signs, shi_load(in + (size_t)i * sizeof(float)));
+    return signs;
+}
+
+/* Adds a block of two rows: here[r] and, half a turn further, opposite[r]. Two rows share the loads of the table. */
 SHI_INLINE void shi_fold_block(int order, const unsigned char *const here[2], const unsigned char *const opposite[2], int count, int phases,
-                               const shi_azimuth_table *table, const float turn[4], int first, shi_row_sums *sums) {
+                               const shi_columns *columns, const float turn[4], shi_v total[2][SHI_PHASES][SHI_SUMS]) {
     const shi_v zero = shi_splat(0.0f);
-    shi_v signs = sums->signs;
     for (int phase = 0; phase < phases; phase++) {
         shi_fold_sums a = { zero, zero, zero, zero, zero }, b = a;
         for (int i = phase * SHI_LANES; i < count; i += phases * SHI_LANES) {
             const size_t at = (size_t)i * sizeof(float);
             const shi_v here_a = shi_load(here[0] + at), opposite_a = shi_load(opposite[0] + at);
             const shi_v here_b = shi_load(here[1] + at), opposite_b = shi_load(opposite[1] + at);
-            signs = shi_or(signs, shi_or(shi_or(here_a, opposite_a), shi_or(here_b, opposite_b)));
-            shi_fold_add(order, here_a, opposite_a, table, i, &a);
-            shi_fold_add(order, here_b, opposite_b, table, i, &b);
+            shi_fold_add(order, here_a, opposite_a, columns->table + 4 * i, &a);
+            shi_fold_add(order, here_b, opposite_b, columns->table + 4 * i, &b);
         }
-        shi_fold_turn(order, &a, turn, sums->total[0][first + phase]);
-        shi_fold_turn(order, &b, turn, sums->total[1][first + phase]);
+        shi_fold_turn(order, &a, turn, total[0][phase]);
+        shi_fold_turn(order, &b, turn, total[1][phase]);
     }
-    sums->signs = signs;
-}
-
-/* Sums of one plane's vectors by channel: out[k] is the sum of all floats whose index is k modulo `interleave`. Halves the vectors,
- * whose length is a power of two times interleave. */
-SHI_INLINE void shi_sum_lanes(const shi_v *vectors, size_t step, int phases, int interleave, float *out) {
-    float lanes[SHI_PHASES * SHI_LANES];
-    for (int phase = 0; phase < phases; phase++)
-        shi_store(lanes + phase * SHI_LANES, vectors[(size_t)phase * step]);
-    for (int n = phases * SHI_LANES / 2; n >= interleave; n /= 2)
-        for (int i = 0; i < n; i++)
-            lanes[i] += lanes[i + n];
-    for (int k = 0; k < interleave; k++)
-        out[k] = lanes[k];
 }
 
 /* Mean over a row's polar angle t of functions of it, times the row's share of the sphere. */
@@ -2495,15 +2511,30 @@ typedef struct shi_row_weights {
     double one, cos, sin, cos_cos, sin_cos;
 } shi_row_weights;
 
-/* Area texels: closed integrals between the row's edges. */
-SHI_FUNCTION void shi_row_weights_area(int row, int height, shi_row_weights *w) {
-    const double t0 = SHI_PI * row / height, t1 = SHI_PI * (row + 1) / height;
-    const double c0 = cos(t0), s0 = sin(t0), c1 = cos(t1), s1 = sin(t1);
-    w->one = (c0 - c1) / 2;
-    w->cos = (s1 * s1 - s0 * s0) / 4;
-    w->sin = (t1 - t0 - (s1 * c1 - s0 * c0)) / 4;
-    w->cos_cos = (c0 * c0 * c0 - c1 * c1 * c1) / 6;
-    w->sin_cos = (s1 * s1 * s1 - s0 * s0 * s0) / 6;
+/* The polar angle of an edge between rows, with its cosine and sine. */
+typedef struct shi_edge {
+    double angle, cos, sin;
+} shi_edge;
+
+SHI_INLINE shi_edge shi_edge_at(double angle) {
+    const shi_edge edge = { angle, cos(angle), sin(angle) };
+    return edge;
+}
+
+/* The edge one row further, by the addition theorem: good for a group of rows. */
+SHI_INLINE shi_edge shi_edge_next(const shi_edge *edge, const shi_edge *step) {
+    const shi_edge next = { edge->angle + step->angle, edge->cos * step->cos - edge->sin * step->sin,
+                            edge->sin * step->cos + edge->cos * step->sin };
+    return next;
+}
+
+/* Area texels: closed integrals from the row's upper edge to its lower. */
+SHI_INLINE void shi_row_weights_area(const shi_edge *a, const shi_edge *b, shi_row_weights *w) {
+    w->one = (a->cos - b->cos) / 2;
+    w->cos = (b->sin * b->sin - a->sin * a->sin) / 4;
+    w->sin = (b->angle - a->angle - (b->sin * b->cos - a->sin * a->cos)) / 4;
+    w->cos_cos = (a->cos * a->cos * a->cos - b->cos * b->cos * b->cos) / 6;
+    w->sin_cos = (b->sin * b->sin * b->sin - a->sin * a->sin * a->sin) / 6;
 }
 
 /* Point texels: Fejer's first rule, 1/H (1 - 2 sum_k cos(2 k t) / (4 k^2 - 1)), k <= H/2; exact for polynomials in cos t below
@@ -2524,72 +2555,74 @@ SHI_FUNCTION void shi_row_weights_point(int row, int height, shi_row_weights *w)
     w->sin_cos = w->one * s * c;
 }
 
-/* Spreads a row's five means over azimuth into the nine sums. */
-SHI_FUNCTION void shi_row_spread(const shi_row_weights *w, const double mean[SHI_SUMS], sh_accum *accum) {
-    const double third = w->one * mean[SHI_SUM] / 3, half = (w->one - w->cos_cos) / 2;
-    double *sum = accum->sum;
-    sum[SH_R0] += w->one * mean[SHI_SUM];
-    sum[SH_X] += w->sin * mean[SHI_COS1];
-    sum[SH_Y] += w->sin * mean[SHI_SIN1];
-    sum[SH_Z] += w->cos * mean[SHI_SUM];
-    sum[SH_XX] += half * (mean[SHI_SUM] + mean[SHI_COS2]) - third;
-    sum[SH_XY] += half * mean[SHI_SIN2];
-    sum[SH_XZ] += w->sin_cos * mean[SHI_COS1];
-    sum[SH_YY] += half * (mean[SHI_SUM] - mean[SHI_COS2]) - third;
-    sum[SH_YZ] += w->sin_cos * mean[SHI_SIN1];
-    accum->weight += w->one;
+/* The moments that a row's five sums are spread to. */
+enum { SHI_M_1, SHI_M_X, SHI_M_Y, SHI_M_Z, SHI_M_COS2, SHI_M_SIN2, SHI_M_XZ, SHI_M_YZ, SHI_M_ZZ };
+
+SHI_INLINE void shi_row_spread(int order, const shi_row_weights *w, shi_v sums[SHI_SUMS], shi_v moment[SHI_MOMENTS]) {
+    const shi_v sum = sums[SHI_SUM];
+    moment[SHI_M_1] = shi_madd(shi_splat((float)w->one), sum, moment[SHI_M_1]);
+    if (order >= SH_L1) {
+        const shi_v sine = shi_splat((float)w->sin);
+        moment[SHI_M_X] = shi_madd(sine, sums[SHI_COS1], moment[SHI_M_X]);
+        moment[SHI_M_Y] = shi_madd(sine, sums[SHI_SIN1], moment[SHI_M_Y]);
+        moment[SHI_M_Z] = shi_madd(shi_splat((float)w->cos), sum, moment[SHI_M_Z]);
+    }
+    if (order >= SH_L2) {
+        const shi_v half = shi_splat((float)((w->one - w->cos_cos) / 2)), sin_cos = shi_splat((float)w->sin_cos);
+        moment[SHI_M_COS2] = shi_madd(half, sums[SHI_COS2], moment[SHI_M_COS2]);
+        moment[SHI_M_SIN2] = shi_madd(half, sums[SHI_SIN2], moment[SHI_M_SIN2]);
+        moment[SHI_M_XZ] = shi_madd(sin_cos, sums[SHI_COS1], moment[SHI_M_XZ]);
+        moment[SHI_M_YZ] = shi_madd(sin_cos, sums[SHI_SIN1], moment[SHI_M_YZ]);
+        moment[SHI_M_ZZ] = shi_madd(shi_splat((float)w->cos_cos), sum, moment[SHI_M_ZZ]);
+    }
 }
 
-/* Reads two rows (the second may be the first again: then it is read once) and sums them. */
-SHI_INLINE void shi_fold_rows(int order, shi_reader *reader, const shi_azimuth_table *table, int row, int rows, shi_row_sums *sums) {
-    const int width = reader->image->width, half = width % 2 ? width : width / 2;
-    const int interleave = reader->layout.interleave, phases = shi_phases(interleave);
-    const double block_angle = 2.0 * SHI_PI * (double)SHI_BLOCK / width, block_cos = cos(block_angle), block_sin = sin(block_angle);
+/* Reads one or two rows, starting at `row`, sums each over its columns, and spreads the sums into the group. */
+SHI_INLINE void shi_fold_rows(int order, shi_reader *reader, const shi_columns *columns, int row, int rows, const shi_row_weights *w,
+                              shi_group *group) {
+    const int width = reader->image->width, folds = width % 2 == 0, end = folds ? width / 2 : width;
+    const int interleave = reader->layout.interleave, planes = reader->layout.planes, phases = shi_phases(interleave);
     double c = 1.0, s = 0.0;
     shi_scratch scratch[4];
-    memset(sums, 0, sizeof *sums);
-    for (int x = 0; x < half; x += SHI_BLOCK) {
-        const int count = half - x < SHI_BLOCK ? half - x : SHI_BLOCK, count_opposite = half < width ? count : 0;
+    shi_v total[3][2][SHI_PHASES][SHI_SUMS];
+    for (int plane = 0; plane < planes; plane++)
+        for (int phase = 0; phase < phases; phase++)
+            for (int i = 0; i < SHI_SUMS; i++)
+                total[plane][0][phase][i] = total[plane][1][phase][i] = shi_splat(0.0f);
+    for (int x = 0; x < end; x += SHI_BLOCK) {
+        const int count = end - x < SHI_BLOCK ? end - x : SHI_BLOCK, padded = (int)shi_round_up((size_t)count);
         const float turn[4] = { (float)c, (float)s, (float)(c * c - s * s), (float)(2.0 * c * s) };
         const unsigned char *here[2], *opposite[2];
         for (int r = 0; r < 2; r++) {
-            here[r] = r < rows ? shi_read_block(reader, row + r, x, count, &scratch[2 * r]) : here[0];
-            opposite[r] = r < rows ? shi_read_block(reader, row + r, half % width + x, count_opposite, &scratch[2 * r + 1]) : opposite[0];
+            here[r] = r < rows ? shi_read_block(reader, row + r, x, count, padded, &scratch[2 * r]) : here[0];
+            opposite[r] = r < rows ? shi_read_block(reader, row + r, folds ? end + x : x, folds ? count : 0, padded, &scratch[2 * r + 1])
+                                   : opposite[0];
+            if (reader->look_for_negative)
+                group->signs = shi_or(group->signs, shi_or(shi_signs(here[r], padded * interleave),
+                                                           shi_signs(opposite[r], padded * interleave)));
         }
-        for (int plane = 0; plane < reader->layout.planes; plane++) {
-            shi_fold_block(order, here, opposite, SHI_BLOCK * interleave, phases, table, turn, plane, sums);
+        for (int plane = 0; plane < planes; plane++) {
+            shi_fold_block(order, here, opposite, padded * interleave, phases, columns, turn, total[plane]);
             for (int r = 0; r < 2; r++) {
                 here[r] += SHI_BLOCK * sizeof(float);
                 opposite[r] += SHI_BLOCK * sizeof(float);
             }
         }
-        const double next = c * block_cos - s * block_sin;
-        s = s * block_cos + c * block_sin;
+        const double next = c * columns->block_cos - s * columns->block_sin;
+        s = s * columns->block_cos + c * columns->block_sin;
         c = next;
     }
+    for (int r = 0; r < rows; r++)
+        for (int plane = 0; plane < planes; plane++)
+            for (int phase = 0; phase < phases; phase++)
+                shi_row_spread(order, &w[r], total[plane][r][phase], group->moment[plane + phase]);
 }
 
-/* The means over azimuth of one row's five functions, per colour channel; returns 0 if one is not finite. */
-SHI_FUNCTION int shi_fold_means(int order, const shi_reader *reader, shi_v total[SHI_PHASES][SHI_SUMS], double mean[3][SHI_SUMS]) {
-    const shi_layout *layout = &reader->layout;
-    const int phases = shi_phases(layout->interleave);
-    const double width = reader->image->width, step = SHI_PI / width, unit = 1.0 / (width * (double)reader->scale);
-    const int point = (reader->flags & SH_POINT_TEXELS) != 0;
-    /* What a texel's width does to each frequency; points see none of those that are constant on all columns. */
-    const double smear[3] = { 1.0, point ? width > 1 : sin(step) / step, point ? width > 2 : sin(2 * step) / (2 * step) };
-    const double sense = reader->flags & SH_CLOCKWISE ? -1.0 : 1.0;
-    int finite = 1;
-    for (int i = 0; i < (order == SH_L0 ? 1 : order == SH_L1 ? 3 : SHI_SUMS); i++) {
-        const double factor = unit * smear[(i + 1) / 2];
-        float sum[SHI_PHASES];
-        for (int plane = 0; plane < layout->planes; plane++)
-            shi_sum_lanes(&total[plane][i], SHI_SUMS, phases, layout->interleave, sum + plane);
-        for (int k = 0; k < layout->channels; k++) {
-            finite &= shi_is_finite(sum[k]);
-            mean[k][i] = factor * (double)sum[k] * (i == SHI_SIN1 || i == SHI_SIN2 ? sense : 1.0);
-        }
-    }
-    return finite;
+SHI_FUNCTION void shi_group_clear(shi_group *group) {
+    group->signs = shi_splat(0.0f);
+    for (int phase = 0; phase < SHI_PHASES; phase++)
+        for (int i = 0; i < SHI_MOMENTS; i++)
+            group->moment[phase][i] = shi_splat(0.0f);
 }
 
 /* Whether any value read had its sign bit set. */
@@ -2601,24 +2634,63 @@ SHI_INLINE int shi_any_sign(shi_v signs) {
     return (any >> 31) != 0;
 }
 
-/* The means of one or two rows. Values are looked at one by one only where a row's sums say that something is wrong with one of
- * them, and once more, scaled down, where finite values overflow. */
-SHI_INLINE void shi_equirect_means(int order, shi_reader *reader, const shi_azimuth_table *table, int row, int rows, int count_negative,
-                                   double mean[2][3][SHI_SUMS]) {
-    for (int attempt = 0; attempt < 3; attempt++) {
-        shi_row_sums sums;
-        reader->careful = attempt > 0;
-        reader->scale = attempt < 2 ? 1.0f : 1.0f / 16777216.0f; /* 2^-24, more than the columns of any image in memory add */
-        const sh_report before = reader->report;
-        shi_fold_rows(order, reader, table, row, rows, &sums);
-        int finite = 1;
-        for (int r = 0; r < rows; r++)
-            finite &= shi_fold_means(order, reader, sums.total[r], mean[r]);
-        if (finite && (reader->careful || !count_negative || !shi_any_sign(sums.signs)))
-            return;
-        if (attempt < 2)
-            reader->report = before;
+/* A group's moments by colour channel, in double; returns 0 if one is not finite. */
+SHI_FUNCTION int shi_group_sum(int order, const shi_layout *layout, const shi_group *group, double moment[3][SHI_MOMENTS]) {
+    const int interleave = layout->interleave, phases = shi_phases(interleave);
+    int finite = 1;
+    for (int i = 0; i < SH_COUNT(order); i++) {
+        double sum[SHI_PHASES] = { 0 };
+        for (int plane = 0; plane < layout->planes; plane++) {
+            float lanes[SHI_PHASES * SHI_LANES];
+            for (int phase = 0; phase < phases; phase++)
+                shi_store(lanes + phase * SHI_LANES, group->moment[plane + phase][i]);
+            for (int j = 0; j < phases * SHI_LANES; j += interleave)
+                for (int k = 0; k < interleave; k++)
+                    sum[plane + k] += (double)lanes[j + k];
+        }
+        for (int k = 0; k < layout->channels; k++) {
+            finite &= shi_is_finite((float)sum[k]);
+            moment[k][i] = sum[k];
+        }
     }
+    return finite;
+}
+
+/* Sums a group of rows. Values are looked at one by one only where the sums say that something is wrong with one of them, and once
+ * more, scaled down, where finite values overflow. */
+SHI_INLINE void shi_equirect_group(int order, shi_reader *reader, const shi_columns *columns, int row, int rows,
+                                   const shi_row_weights *w, double moment[3][SHI_MOMENTS]) {
+    const sh_report before = reader->report;
+    for (int attempt = 0; attempt < 3; attempt++) {
+        shi_group group;
+        shi_group_clear(&group);
+        reader->report = before;
+        reader->careful = attempt > 0;
+        reader->scale = attempt < 2 ? 1.0f : 1.0f / 16777216.0f; /* 2^-24 */
+        for (int r = 0; r < rows; r += 2)
+            shi_fold_rows(order, reader, columns, row + r, rows - r < 2 ? 1 : 2, w + r, &group);
+        if (shi_group_sum(order, &reader->layout, &group, moment) &&
+            (reader->careful || !shi_any_sign(group.signs)))
+            break;
+    }
+}
+
+/* Adds a group's moments of one channel to the nine sums. */
+SHI_FUNCTION void shi_equirect_add(const shi_reader *reader, const shi_columns *columns, const double moment[SHI_MOMENTS],
+                                   sh_accum *accum) {
+    const double scale = (double)reader->scale, sense = reader->flags & SH_CLOCKWISE ? -1.0 : 1.0;
+    const double f0 = columns->mean[0] / scale, f1 = columns->mean[1] / scale, f2 = columns->mean[2] / scale;
+    const double all = f0 * moment[SHI_M_1], zz = f0 * moment[SHI_M_ZZ], cos2 = f2 * moment[SHI_M_COS2];
+    double *sum = accum->sum;
+    sum[SH_R0] += all;
+    sum[SH_X] += f1 * moment[SHI_M_X];
+    sum[SH_Y] += sense * f1 * moment[SHI_M_Y];
+    sum[SH_Z] += f0 * moment[SHI_M_Z];
+    sum[SH_XX] += (all - zz) / 2 + cos2 - all / 3;
+    sum[SH_XY] += sense * f2 * moment[SHI_M_SIN2];
+    sum[SH_XZ] += f1 * moment[SHI_M_XZ];
+    sum[SH_YY] += (all - zz) / 2 - cos2 - all / 3;
+    sum[SH_YZ] += sense * f1 * moment[SHI_M_YZ];
 }
 
 /* The arguments of a projection. */
@@ -2630,28 +2702,39 @@ typedef struct shi_rows {
     sh_report *report;
 } shi_rows;
 
+/* Weights of `count` rows from `row` on, at most SHI_GROUP. */
+SHI_FUNCTION void shi_row_weights_init(int row, int count, int height, int point, shi_row_weights *w) {
+    const shi_edge step = shi_edge_at(SHI_PI / height);
+    shi_edge upper = shi_edge_at(row * step.angle);
+    for (int r = 0; r < count; r++) {
+        const shi_edge lower = shi_edge_next(&upper, &step);
+        if (point)
+            shi_row_weights_point(row + r, height, &w[r]);
+        else
+            shi_row_weights_area(&upper, &lower, &w[r]);
+        upper = lower;
+    }
+}
+
 SHI_INLINE int shi_equirect_rows(int order, const shi_rows *job) {
     const sh_image *image = job->image;
     const int end = job->first + job->count, point = (job->flags & SH_POINT_TEXELS) != 0;
-    const int count_negative = job->report || job->flags & SH_CLAMP_NEGATIVE;
     shi_reader reader;
-    shi_azimuth_table table;
-    const int status = shi_reader_init(image, job->flags, &reader);
+    shi_columns columns;
+    const int status = shi_reader_init(image, job->flags, job->report, &reader);
     if (status != SH_OK)
         return status;
-    shi_azimuth_table_init(image->width, reader.layout.interleave, &table);
-    for (int row = job->first; row < end; row += 2) {
-        double mean[2][3][SHI_SUMS] = { { { 0 } } };
-        const int rows = end - row < 2 ? 1 : 2;
-        shi_equirect_means(order, &reader, &table, row, rows, count_negative, mean);
-        for (int r = 0; r < rows; r++) {
-            shi_row_weights w;
-            if (point)
-                shi_row_weights_point(row + r, image->height, &w);
-            else
-                shi_row_weights_area(row + r, image->height, &w);
-            for (int k = 0; k < reader.layout.channels; k++)
-                shi_row_spread(&w, mean[r][k], job->accum + k);
+    shi_columns_init(image->width, reader.layout.interleave, point, &columns);
+    for (int row = job->first; row < end; row += SHI_GROUP) {
+        const int rows = end - row < SHI_GROUP ? end - row : SHI_GROUP;
+        double moment[3][SHI_MOMENTS] = { { 0 } };
+        shi_row_weights w[SHI_GROUP];
+        shi_row_weights_init(row, rows, image->height, point, w);
+        shi_equirect_group(order, &reader, &columns, row, rows, w, moment);
+        for (int k = 0; k < reader.layout.channels; k++) {
+            shi_equirect_add(&reader, &columns, moment[k], job->accum + k);
+            for (int r = 0; r < rows; r++)
+                job->accum[k].weight += w[r].one;
         }
     }
     if (job->report) {

@@ -1,0 +1,203 @@
+/* sh_bench - run time and error of sh.h, beside a baseline and a physical limit that are measured in the same run.
+ *
+ * A topic is a file with a function that adds its cases to a list: see bench_case in bench.h. */
+#if !defined(_WIN32)
+#define _POSIX_C_SOURCE 200112L
+#endif
+
+#include <errno.h>
+#if !defined(_WIN32)
+#include <sys/stat.h>
+#endif
+
+#include "bench_eval.h"
+#include "bench_project.h"
+#include "bench_sample.h"
+#include "bench_svg.h"
+
+static const char usage[] = "usage: sh_bench [--list] [--filter TEXT] [--quick] [--json FILE] [--svg FILE] [--help]\n"
+                            "\n"
+                            "Measures sh.h: each case in turns with its baseline and with its physical limit.\n"
+                            "\n"
+                            "  --list         print the names of the cases, and measure nothing\n"
+                            "  --filter TEXT  only cases whose name contains TEXT\n"
+                            "  --quick        seconds instead of minutes, less repeatable\n"
+                            "  --json FILE    write the results as JSON\n"
+                            "  --svg FILE     plot run time against error\n"
+                            "\n"
+                            "Exit status: 0; 1 if an error is larger than its bound; 2 if something cannot be done.\n";
+
+typedef struct bench_options {
+    int list, quick, help;
+    const char *filter, *json, *svg;
+} bench_options;
+
+/* One line on stderr; the status to exit with. */
+static int complain(const char *what, const char *about) {
+    fprintf(stderr, "sh_bench: %s '%s'\n", what, about);
+    return 2;
+}
+
+/* ---- Command line ------------------------------------------------------------------------------------------------------------ */
+
+static int parse(int argc, char **argv, bench_options *options) {
+    memset(options, 0, sizeof *options);
+    for (int i = 1; i < argc; i++) {
+        const char *option = argv[i];
+        const char **value = strcmp(option, "--filter") == 0 ? &options->filter
+                             : strcmp(option, "--json") == 0 ? &options->json
+                             : strcmp(option, "--svg") == 0  ? &options->svg
+                                                             : NULL;
+        if (value && i + 1 == argc)
+            return complain("nothing follows", option);
+        if (value)
+            *value = argv[++i];
+        else if (strcmp(option, "--list") == 0)
+            options->list = 1;
+        else if (strcmp(option, "--quick") == 0)
+            options->quick = 1;
+        else if (strcmp(option, "--help") == 0 || strcmp(option, "-h") == 0)
+            options->help = 1;
+        else
+            return complain("unknown option", option);
+    }
+    return 0;
+}
+
+static bench_list matching_cases(const char *filter) {
+    bench_list all = { NULL, 0, 0 };
+    bench_eval_cases(&all);
+    bench_sample_cases(&all);
+    bench_project_cases(&all);
+    int kept = 0;
+    for (int i = 0; i < all.count; i++)
+        if (!filter || strstr(all.cases[i].name, filter))
+            all.cases[kept++] = all.cases[i];
+    all.count = kept;
+    return all;
+}
+
+/* ---- Output files: complete, or not there ------------------------------------------------------------------------------------ */
+
+/* Whether `path` is something that a file must not replace: a link, such as /dev/stdout, a pipe, a device. */
+static int is_special(const char *path) {
+#if defined(_WIN32)
+    (void)path;
+    return 0;
+#else
+    struct stat status;
+    return lstat(path, &status) == 0 && !S_ISREG(status.st_mode);
+#endif
+}
+
+/* Where the file is written before it gets its name. Free the result. */
+static char *temporary_name(const char *path) {
+    const size_t size = strlen(path) + sizeof ".tmp";
+    char *name = (char *)bench_check(malloc(size));
+    snprintf(name, size, "%s%s", path, is_special(path) ? "" : ".tmp");
+    return name;
+}
+
+/* Whether a file can be written there: better known before minutes of measuring than after. */
+static int check_output(const char *path) {
+    if (!path)
+        return 0;
+    char *temporary = temporary_name(path);
+    FILE *file = fopen(temporary, "wb");
+    const int status = file ? 0 : complain(strerror(errno), path);
+    if (file) {
+        fclose(file);
+        if (strcmp(temporary, path) != 0)
+            remove(temporary);
+    }
+    free(temporary);
+    return status;
+}
+
+typedef void (*bench_writer)(FILE *file, const bench_machine *machine, const bench_result *results, int count);
+
+static int write_output(const char *path, bench_writer writer, const bench_machine *machine, const bench_result *results,
+                        int count) {
+    if (!path)
+        return 0;
+    char *temporary = temporary_name(path);
+    FILE *file = fopen(temporary, "wb");
+    int written = file != NULL;
+    if (file) {
+        writer(file, machine, results, count);
+        written = !ferror(file);
+        written &= fclose(file) == 0;
+    }
+    if (strcmp(temporary, path) != 0) {
+#if defined(_WIN32)
+        if (written)
+            remove(path); /* rename does not replace a file there */
+#endif
+        written = written && rename(temporary, path) == 0;
+        if (!written)
+            remove(temporary);
+    }
+    free(temporary);
+    return written ? 0 : complain("cannot write", path);
+}
+
+/* ---- Main -------------------------------------------------------------------------------------------------------------------- */
+
+static void measure_all(const bench_list *list, int quick, bench_result *results) {
+    for (int i = 0; i < list->count; i++) {
+        bench_case *test = &list->cases[i];
+        test->prepare(test);
+        results[i] = quick ? bench_measure(test, 0.012, 5) : bench_measure(test, 0.7, 5);
+        bench_free_all();
+        bench_print_result(&results[i], i ? &results[i - 1] : NULL);
+    }
+}
+
+static int report_failures(const bench_result *results, int count) {
+    int status = 0;
+    for (int i = 0; i < count; i++)
+        if (bench_failed(&results[i])) {
+            fprintf(stderr, "sh_bench: %s: error %.1e, allowed %.1e\n", results[i].test->name, results[i].error,
+                    results[i].test->error_bound);
+            status = 1;
+        }
+    return status;
+}
+
+static int measure_and_report(const bench_list *list, const bench_options *options) {
+    if (check_output(options->json) || check_output(options->svg))
+        return 2;
+    const bench_machine machine = bench_describe_machine();
+    bench_result *results = (bench_result *)bench_check(calloc((size_t)list->count, sizeof *results));
+    bench_print_heading(&machine);
+    measure_all(list, options->quick, results);
+    int status = report_failures(results, list->count);
+    if (write_output(options->json, bench_write_json, &machine, results, list->count) ||
+        write_output(options->svg, bench_write_svg, &machine, results, list->count))
+        status = 2;
+    free(results);
+    return status;
+}
+
+int main(int argc, char **argv) {
+    bench_options options;
+    if (parse(argc, argv, &options))
+        return 2;
+    if (options.help) {
+        fputs(usage, stdout);
+        return 0;
+    }
+    bench_list list = matching_cases(options.filter);
+    int status = 0;
+    if (list.count == 0)
+        status = complain("no case name contains", options.filter);
+    else if (options.list)
+        for (int i = 0; i < list.count; i++)
+            puts(list.cases[i].name);
+    else
+        status = measure_and_report(&list, &options);
+    free(list.cases);
+    if (fflush(stdout) != 0)
+        return complain("cannot write", "standard output");
+    return status;
+}
