@@ -130,7 +130,8 @@ SHI_INLINE float sh_irradiance_ao(int order, const float *c, const float n[3], f
  * lies between bounds that the coefficients imply. A closure estimates the bands that were left out from those that are known, and
  * stays between the bounds: never negative, I(n) - I(-n) = 4 n.R1 to rounding, exact for one directional light and for ambient light.
  * Coefficients that no such light has (R0 <= 0, |R1| > R0, or a moment matrix with an eigenvalue below -R0/512, which storage in
- * half floats stays clear of; R0 < 1e-34 counts as black) give the linear reconstruction clamped at 0. Rounding error <= 1e-6 R0. */
+ * half floats stays clear of; R0 < 1e-34 counts as black) give the linear reconstruction clamped at 0. Rounding error <= 2e-6 R0 and, where the upper bound is
+ * b R0 and decides, 1e-6 R0 / b, since it is a square root. */
 
 /* Bounds of the true irradiance / pi of any non-negative light that has these coefficients, tight given R0, n.R1 and n'R2 n.
  * L0: 0 and 4 R0. The upper one allows for an error of 8 ulp of R0 in the coefficients. Where they are no light's: lo = hi. */
@@ -166,8 +167,8 @@ SHI_INLINE float sh_closure_irradiance(int order, const sh_closure *closure, con
 
 #ifndef SH_NO_BATCH
 /* The same for many normals x[i], y[i], z[i]; out is planar, channel k of normal i is out[k * count + i]. Any number of channels and
- * normals, 0 too. A result does not depend on its position or on count; it is the scalar function's to 1e-6 R0, the power of
- * Geomerics' model included. out may be an input array. */
+ * normals, 0 too. A result does not depend on its position or on count, and is the scalar function's to rounding; the power in Geomerics'
+ * model is within 1e-6 of itself. out may be an input array. */
 SHI_INLINE void sh_irradiance_closure_batch(int order, int channels, const float *c, const float *x, const float *y, const float *z,
                                             float *out, size_t count);
 SHI_INLINE void sh_closure_irradiance_batch(int order, int channels, const sh_closure *closure, const float *x, const float *y,

@@ -59,7 +59,7 @@ static inline int envs_reduce(const float *pixels, int width, int height, envs_l
     for (int y = 0; y < ENVS_HEIGHT; y++)
         for (int x = 0; x < ENVS_WIDTH; x++) {
             const int texel = y * ENVS_WIDTH + x;
-            const double polar = envs_pi * (y + 0.5) / ENVS_HEIGHT, azimuth = 2.0 * envs_pi * (x + 0.5) / ENVS_WIDTH;
+            const double polar = envs_pi * (y + 0.5) / (int)ENVS_HEIGHT, azimuth = 2.0 * envs_pi * (x + 0.5) / (int)ENVS_WIDTH;
             light->weight[texel] = envs_area(y, ENVS_WIDTH, ENVS_HEIGHT);
             for (int k = 0; k < 3; k++)
                 light->value[k][texel] /= light->weight[texel];

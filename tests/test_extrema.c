@@ -65,7 +65,7 @@ static float largest(const float c[9]) {
 
 /* By descent from the best of a dense set: projected Newton is not needed, shrinking steps are enough. */
 static double search(int order, const float c[9], double sign, int irradiance, int polish) {
-    double best = INFINITY;
+    double best = 1e300;
     float at[3] = { 0, 0, 1 };
     for (int i = 0; i < DENSE; i++) {
         const double value = sign * (double)(irradiance ? sh_irradiance(order, c, dense[i]) : sh_radiance(order, c, dense[i]));
@@ -142,11 +142,13 @@ static void test_many(int count) {
 
 /* Smallest eigenvalue by Jacobi's method, 4 x 4, long double. */
 static double smallest_eigenvalue(const float c[9]) {
-    const long double s = sqrtl(3.0L), t = 3.0L, r0 = c[0], zz = -((long double)c[4] + c[7]);
-    long double m[4][4] = { { r0, s * c[1], s * c[2], s * c[3] },
-                            { s * c[1], r0 + t * c[4], t * c[5], t * c[6] },
-                            { s * c[2], t * c[5], r0 + t * c[7], t * c[8] },
-                            { s * c[3], t * c[6], t * c[8], r0 + t * zz } };
+    long double w[9];
+    for (int i = 0; i < 9; i++)
+        w[i] = (long double)c[i] * (i == 0 ? 1.0L : i < 4 ? sqrtl(3.0L) : 3.0L);
+    long double m[4][4] = { { w[0], w[1], w[2], w[3] },
+                            { w[1], w[0] + w[4], w[5], w[6] },
+                            { w[2], w[5], w[0] + w[7], w[8] },
+                            { w[3], w[6], w[8], w[0] - w[4] - w[7] } };
     for (int sweep = 0; sweep < 12; sweep++)
         for (int p = 0; p < 3; p++)
             for (int q = p + 1; q < 4; q++) {
