@@ -17,7 +17,7 @@ typedef enum bench_role { BENCH_THE_CASE, BENCH_THE_BASELINE, BENCH_THE_LIMIT, B
 /* One of the three that take turns. */
 typedef struct bench_runner {
     bench_case *test;
-    volatile bench_run run; /* volatile: no compiler sees through the call, so none removes or merges calls */
+    volatile bench_run run; /* no compiler sees through the call, so none removes or merges calls */
     size_t calls;           /* per turn */
     double spent;           /* seconds */
     int turns;
@@ -37,8 +37,8 @@ static inline void bench_turn(bench_runner *runner) {
     runner->seconds[runner->turns++] = seconds / (double)runner->calls;
 }
 
-/* Finds the number of calls in a turn, and takes the first turns. A pause of the machine makes one turn long, not two: the shorter of
- * two decides, but a call that takes longer than any pause is not repeated. */
+/* Finds the number of calls in a turn, and takes the first turns. A pause of the machine makes one turn long, not two: the shorter
+ * of two decides. A call that takes longer than any pause is not repeated. */
 static inline void bench_first_turns(bench_runner *runner) {
     for (runner->calls = 1;;) {
         runner->turns = 0;

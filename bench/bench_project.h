@@ -1,15 +1,17 @@
-/* bench_project.h - projecting RGB images; an item is a texel. */
+/* bench_project.h - projecting RGB images, and equirectangular panoramas; an item is a texel. */
 #ifndef BENCH_PROJECT_H
 #define BENCH_PROJECT_H
 
 #include "../tests/oracle_image.h"
 #include "bench_engine.h"
 
-enum { PROJECT_EQUIRECT };
+enum { PROJECT_EQUIRECT, PROJECT_CUBEMAP, PROJECT_OCTAHEDRAL };
 enum { PROJECT_MAX_FACES = 6 };
 
 typedef struct project_data {
     sh_image face[PROJECT_MAX_FACES];
+    int faces;
+    void (*oracle)(const struct project_data *data, long double c[3][9]);
     float c[27];
     engine_rgb engine[9];
     float engine_weight; /* sum of the baseline's weights */
@@ -52,10 +54,10 @@ static inline void project_store(int format, const float rgb[3], unsigned char *
     }
 }
 
-static inline sh_image project_image(int format, int width, int height, int face) {
+/* Fills `pixels` with face number `face`. */
+static inline sh_image project_image(int format, int width, int height, int face, unsigned char *pixels) {
     enum { COLUMNS = 8, ROWS = 4 };
     const size_t size = project_texel_size(format);
-    unsigned char *pixels = (unsigned char *)bench_alloc((size_t)width * (size_t)height * size);
     for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++) {
             const uint32_t i = (uint32_t)(y * width + x),
@@ -71,8 +73,8 @@ static inline sh_image project_image(int format, int width, int height, int face
 /* ---- The oracle ---- */
 
 /* The moments of a texel are linear in the functions of its column: a row's are those of the weighted sum of its columns. */
-static inline void project_oracle_row(const sh_image *image, int y, const oracle_trig *row, const oracle_trig *columns,
-                                      long double c[3][9]) {
+static inline void equirect_oracle_row(const sh_image *image, int y, const oracle_trig *row, const oracle_trig *columns,
+                                       long double c[3][9]) {
     oracle_trig sum[3];
     memset(sum, 0, sizeof sum);
     for (int x = 0; x < image->width; x++) {
@@ -95,10 +97,11 @@ static inline void project_oracle_row(const sh_image *image, int y, const oracle
     }
 }
 
-static inline void project_oracle_equirect(const sh_image *image, long double c[3][9]) {
+static inline void equirect_oracle(const project_data *data, long double c[3][9]) {
+    const sh_image *image = &data->face[0];
     oracle_trig *rows = oracle_axis(image->height, 1, 0), *columns = oracle_axis(image->width, 0, 0);
     for (int y = 0; y < image->height; y++)
-        project_oracle_row(image, y, &rows[y], columns, c);
+        equirect_oracle_row(image, y, &rows[y], columns, c);
     free(rows);
     free(columns);
 }
@@ -121,7 +124,7 @@ static inline const project_reference *project_oracle(const bench_case *test) {
     reference->kind = test->kind;
     reference->format = test->format;
     reference->width = test->width;
-    project_oracle_equirect(&d->face[0], reference->c);
+    d->oracle(d, reference->c);
     return reference;
 }
 
@@ -208,11 +211,20 @@ static inline void equirect_baseline(bench_case *test) {
 
 /* ---- The cases ---- */
 
-static inline void equirect_prepare(bench_case *test) {
+static inline project_data *project_prepare(bench_case *test, int faces) {
     project_data *data = (project_data *)bench_alloc(sizeof *data);
-    data->face[0] = project_image(test->format, test->width, test->height, 0);
+    const size_t face_size = test->items / (size_t)faces * project_texel_size(test->format);
+    unsigned char *pixels = (unsigned char *)bench_alloc((size_t)faces * face_size);
+    for (int i = 0; i < faces; i++)
+        data->face[i] = project_image(test->format, test->width, test->height, i, pixels + (size_t)i * face_size);
+    data->faces = faces;
     test->data = data;
-    test->limit.in = (const float *)data->face[0].pixels;
+    test->limit.in = (const float *)(const void *)pixels;
+    return data;
+}
+
+static inline void equirect_prepare(bench_case *test) {
+    project_prepare(test, 1)->oracle = equirect_oracle;
 }
 
 static inline void equirect_run(bench_case *test) {
@@ -223,25 +235,32 @@ static inline void equirect_run(bench_case *test) {
         sh_project_equirect(SH_L2, &d->face[0], 0, d->c, NULL);
 }
 
-static inline void equirect_add(bench_list *list, int order, int format, int width) {
-    static const char *const format_name[] = { "f32", "f16", "rgbe8" };
+/* A case but for its name, functions and baseline: `faces` images of width x height, which are read once. */
+static inline bench_case *project_add(bench_list *list, int order, int format, int faces, int width, int height) {
     bench_case *test = bench_add(list);
-    snprintf(test->name, sizeof test->name, "project/equirect/L%d/rgb/%s/%dx%d", order, format_name[format], width, width / 2);
-    test->items = (size_t)width * (size_t)(width / 2);
+    test->items = (size_t)faces * (size_t)width * (size_t)height;
     test->order = order;
     test->format = format;
     test->width = width;
-    test->height = width / 2;
+    test->height = height;
+    test->limit.kind = BENCH_READ;
+    test->limit.read = project_texel_size(format);
+    test->error = project_error;
+    return test;
+}
+
+static inline void equirect_add(bench_list *list, int order, int format, int width) {
+    static const char *const format_name[] = { "f32", "f16", "rgbe8" };
+    bench_case *test = project_add(list, order, format, 1, width, width / 2);
+    snprintf(test->name, sizeof test->name, "project/equirect/L%d/rgb/%s/%dx%d", order, format_name[format], width, width / 2);
+    test->kind = PROJECT_EQUIRECT;
     test->prepare = equirect_prepare;
     test->run = equirect_run;
     test->baseline = "trig per texel";
     test->run_baseline = equirect_baseline;
-    test->limit.kind = BENCH_READ;
-    test->limit.read = project_texel_size(format);
-    test->error = project_error;
 }
 
-static inline void bench_project_cases(bench_list *list) {
+static inline void bench_equirect_cases(bench_list *list) {
     static const int widths[] = { 512, 1024, 4096 };
     for (int order = SH_L1; order <= SH_L2; order++)
         for (int format = SH_F32; format <= SH_RGBE8; format++)

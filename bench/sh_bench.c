@@ -10,9 +10,11 @@
 #include <sys/stat.h>
 #endif
 
+#include "bench_closure.h"
 #include "bench_eval.h"
 #include "bench_project.h"
 #include "bench_sample.h"
+#include "bench_square.h"
 #include "bench_svg.h"
 
 static const char usage[] = "usage: sh_bench [--list] [--filter TEXT] [--quick] [--json FILE] [--svg FILE] [--help]\n"
@@ -67,8 +69,10 @@ static int parse(int argc, char **argv, bench_options *options) {
 static bench_list matching_cases(const char *filter) {
     bench_list all = { NULL, 0, 0 };
     bench_eval_cases(&all);
+    bench_closure_cases(&all);
     bench_sample_cases(&all);
-    bench_project_cases(&all);
+    bench_equirect_cases(&all);
+    bench_square_cases(&all);
     int kept = 0;
     for (int i = 0; i < all.count; i++)
         if (!filter || strstr(all.cases[i].name, filter))

@@ -380,6 +380,24 @@ SHI_INLINE int sh_project_equirect(int order, const sh_image *image, unsigned fl
  * skies, threads. The weights are fractions of the sphere: sh_accum_total when all rows are in, or to read the others as black. */
 SHI_INLINE int sh_project_equirect_rows(int order, const sh_image *image, unsigned flags, int first_row, int row_count,
                                           sh_accum *accum, sh_report *report);
+
+/* Projects a cube map: six square faces of one size and format, +x, -x, +y, -y, +z, -z, oriented as OpenGL and Direct3D do (rows from
+ * the top). A texel is light from the direction of its centre, weighted by its solid angle: for smooth light, off by 1 / size^2 of it.
+ * The weights are within 1e-6 of themselves at every size, and their sum is divided out. Error of the sums <= 3e-7 of the mean of
+ * |radiance|. Flag: SH_CLAMP_NEGATIVE. */
+SHI_INLINE int sh_project_cubemap(int order, const sh_image face[6], unsigned flags, float *c, sh_report *report);
+
+/* Adds rows [first_row, first_row + row_count) of all six faces, as sh_project_equirect_rows does. A range that is symmetric about the
+ * middle is faster. */
+SHI_INLINE int sh_project_cubemap_rows(int order, const sh_image face[6], unsigned flags, int first_row, int row_count, sh_accum *accum,
+                                       sh_report *report);
+
+/* Projects a square octahedral map: at u, v in [-1, 1], rows from v = -1, the direction is (u, v, 1 - |u| - |v|) normalised and, beyond
+ * the fold |u| + |v| = 1, ((1 - |v|) sign u, (1 - |u|) sign v, 1 - |u| - |v|). Texels as in sh_project_cubemap; weights within 3e-6.
+ * Leave out a border of repeated texels by pixels and row_stride. */
+SHI_INLINE int sh_project_octahedral(int order, const sh_image *image, unsigned flags, float *c, sh_report *report);
+SHI_INLINE int sh_project_octahedral_rows(int order, const sh_image *image, unsigned flags, int first_row, int row_count,
+                                          sh_accum *accum, sh_report *report);
 #endif /* SH_NO_BATCH */
 
 /* ---- Coefficients --------------------------------------------------------------------------------------------------------------- */
@@ -1348,6 +1366,7 @@ SHI_FUNCTION void sh_direction_fibonacci(uint32_t i, uint32_t count, float dir[3
  *   min, max     the second operand where one is NaN
  *   select       (m, a, b): a where m is set, b elsewhere
  *   iload16      16-bit words, zero-extended;  iload32  native 32-bit words
+ *   repeat3      (a, part): every lane three times, in three vectors; part 0, 1 or 2 of them
  *   transpose4   4 x 4 transposes within each group of four lanes
  *   load4        four consecutive floats of each of SHI_LANES items, `stride` bytes apart: v[j] has float j of all items
  *   store4       the first n of v[0] ... v[3] to n consecutive floats of each item, writing nothing else */
@@ -1469,6 +1488,12 @@ SHI_INLINE void shi_transpose4(shi_v v[4]) {
     v[2] = _mm512_castpd_ps(_mm512_unpacklo_pd(c, d));
     v[3] = _mm512_castpd_ps(_mm512_unpackhi_pd(c, d));
 }
+SHI_INLINE shi_v shi_repeat3(shi_v a, int part) {
+    const __m512i index[3] = { _mm512_setr_epi32(0, 0, 0, 1, 1, 1, 2, 2, 2, 3, 3, 3, 4, 4, 4, 5),
+                               _mm512_setr_epi32(5, 5, 6, 6, 6, 7, 7, 7, 8, 8, 8, 9, 9, 9, 10, 10),
+                               _mm512_setr_epi32(10, 11, 11, 11, 12, 12, 12, 13, 13, 13, 14, 14, 14, 15, 15, 15) };
+    return _mm512_permutexvar_ps(index[part], a);
+}
 SHI_INLINE shi_v shi_load_fours(const unsigned char *p, size_t stride) {
     shi_v v = _mm512_castps128_ps512(shi_load_four(p));
     v = _mm512_insertf32x4(v, shi_load_four(p + stride), 1);
@@ -1522,6 +1547,11 @@ SHI_INLINE void shi_transpose4(shi_v v[4]) {
     v[2] = _mm256_castpd_ps(_mm256_unpacklo_pd(c, d));
     v[3] = _mm256_castpd_ps(_mm256_unpackhi_pd(c, d));
 }
+SHI_INLINE shi_v shi_repeat3(shi_v a, int part) {
+    const __m256i index[3] = { _mm256_setr_epi32(0, 0, 0, 1, 1, 1, 2, 2), _mm256_setr_epi32(2, 3, 3, 3, 4, 4, 4, 5),
+                               _mm256_setr_epi32(5, 5, 6, 6, 6, 7, 7, 7) };
+    return _mm256_permutevar8x32_ps(a, index[part]);
+}
 SHI_INLINE shi_v shi_load_fours(const unsigned char *p, size_t stride) {
     return _mm256_insertf128_ps(_mm256_castps128_ps256(shi_load_four(p)), shi_load_four(p + stride), 1);
 }
@@ -1565,6 +1595,11 @@ SHI_INLINE shi_i shi_shr(shi_i a, int n) { return _mm_srl_epi32(a, _mm_cvtsi32_s
 SHI_INLINE shi_v shi_as_float(shi_i a) { return _mm_castsi128_ps(a); }
 SHI_INLINE shi_v shi_to_float(shi_i a) { return _mm_cvtepi32_ps(a); }
 SHI_INLINE void shi_transpose4(shi_v v[4]) { _MM_TRANSPOSE4_PS(v[0], v[1], v[2], v[3]); }
+SHI_INLINE shi_v shi_repeat3(shi_v a, int part) {
+    return part == 0   ? _mm_shuffle_ps(a, a, _MM_SHUFFLE(1, 0, 0, 0))
+           : part == 1 ? _mm_shuffle_ps(a, a, _MM_SHUFFLE(2, 2, 1, 1))
+                       : _mm_shuffle_ps(a, a, _MM_SHUFFLE(3, 3, 3, 2));
+}
 
 #elif SH_SIMD == SH_SIMD_NEON
 #if !SHI_HAS_NEON
@@ -1635,6 +1670,12 @@ SHI_INLINE void shi_transpose4(shi_v v[4]) {
     v[2] = vcombine_f32(vget_high_f32(a.val[0]), vget_high_f32(b.val[0]));
     v[3] = vcombine_f32(vget_high_f32(a.val[1]), vget_high_f32(b.val[1]));
 }
+SHI_INLINE shi_v shi_repeat3(shi_v a, int part) {
+    const float32x2_t lo = vget_low_f32(a), hi = vget_high_f32(a);
+    return part == 0   ? vcombine_f32(vdup_lane_f32(lo, 0), lo)
+           : part == 1 ? vcombine_f32(vdup_lane_f32(lo, 1), vdup_lane_f32(hi, 0))
+                       : vcombine_f32(hi, vdup_lane_f32(hi, 1));
+}
 
 #elif SH_SIMD == SH_SIMD_WASM
 #if !SHI_HAS_WASM
@@ -1676,6 +1717,11 @@ SHI_INLINE void shi_transpose4(shi_v v[4]) {
     v[1] = wasm_i64x2_shuffle(a, b, 1, 3);
     v[2] = wasm_i64x2_shuffle(c, d, 0, 2);
     v[3] = wasm_i64x2_shuffle(c, d, 1, 3);
+}
+SHI_INLINE shi_v shi_repeat3(shi_v a, int part) {
+    return part == 0   ? wasm_i32x4_shuffle(a, a, 0, 0, 0, 1)
+           : part == 1 ? wasm_i32x4_shuffle(a, a, 1, 1, 2, 2)
+                       : wasm_i32x4_shuffle(a, a, 2, 3, 3, 3);
 }
 
 #elif SH_SIMD == SH_SIMD_SCALAR
@@ -1721,6 +1767,10 @@ SHI_INLINE shi_v shi_select(shi_m m, shi_v a, shi_v b) { return m ? a : b; }
 SHI_INLINE shi_v shi_or(shi_v a, shi_v b) {
     shi_i x = shi_iload32(&a) | shi_iload32(&b);
     return shi_load(&x);
+}
+SHI_INLINE shi_v shi_repeat3(shi_v a, int part) {
+    (void)part;
+    return a;
 }
 SHI_INLINE void shi_load4(const unsigned char *p, size_t stride, shi_v v[4]) {
     (void)stride;
@@ -2286,13 +2336,23 @@ SHI_FUNCTION float shi_srgb_to_linear(int byte) {
     return (float)(b > 0.04045 ? t * t * root * root : b / 12.92);
 }
 
-/* Checks the image as well. */
-SHI_FUNCTION int shi_reader_init(const sh_image *image, unsigned flags, const sh_report *report, shi_reader *reader) {
-    const int status = shi_image_check(image, &reader->layout);
-    if (status != SH_OK)
-        return status;
+SHI_INLINE void shi_reader_use(shi_reader *reader, const sh_image *image) {
     reader->image = image;
     reader->stride = image->row_stride ? image->row_stride : (size_t)image->width * reader->layout.pixel_size;
+}
+
+/* Checks the images as well, of which there may be several, alike but for their pixels and strides. */
+SHI_FUNCTION int shi_reader_init(const sh_image *image, int images, unsigned flags, const sh_report *report, shi_reader *reader) {
+    for (int i = 0; i < images; i++) {
+        const int status = shi_image_check(image + i, &reader->layout);
+        if (status != SH_OK)
+            return status;
+        if (image[i].width != image->width || image[i].height != image->height)
+            return SH_ERROR_SIZE;
+        if (image[i].channels != image->channels || image[i].format != image->format)
+            return SH_ERROR_FORMAT;
+    }
+    shi_reader_use(reader, image);
     reader->flags = flags;
     reader->look_for_negative = (report || flags & SH_CLAMP_NEGATIVE) && (image->format == SH_F32 || image->format == SH_F16);
     reader->careful = 0;
@@ -2375,10 +2435,9 @@ typedef struct shi_scratch {
     float decoded[SHI_BLOCK * 4];
 } shi_scratch;
 
-/* Pixels x to x + count of a row as floats, padded with black to `padded` pixels, a multiple of SHI_LANES, both <= SHI_BLOCK. */
-SHI_FUNCTION const unsigned char *shi_read_block(shi_reader *reader, int row, int x, int count, int padded, shi_scratch *scratch) {
+SHI_FUNCTION const unsigned char *shi_decode_block(shi_reader *reader, const unsigned char *in, int count, int padded,
+                                                   shi_scratch *scratch) {
     const size_t size = reader->layout.pixel_size;
-    const unsigned char *in = (const unsigned char *)reader->image->pixels + (size_t)row * reader->stride + (size_t)x * size;
     const int values = padded * reader->layout.interleave;
     if (count < padded) {
         memcpy(scratch->raw, in, (size_t)count * size);
@@ -2399,6 +2458,15 @@ SHI_FUNCTION const unsigned char *shi_read_block(shi_reader *reader, int row, in
     if (reader->careful && reader->layout.planes == 1)
         shi_clean(reader, count, scratch->decoded);
     return (const unsigned char *)scratch->decoded;
+}
+
+/* Pixels x to x + count of a row as floats, padded with black to `padded` pixels, a multiple of SHI_LANES, both <= SHI_BLOCK. */
+SHI_INLINE const unsigned char *shi_read_block(shi_reader *reader, int row, int x, int count, int padded, shi_scratch *scratch) {
+    const unsigned char *in = (const unsigned char *)reader->image->pixels + (size_t)row * reader->stride +
+                              (size_t)x * reader->layout.pixel_size;
+    if (reader->image->format == SH_F32 && !reader->careful && count == padded)
+        return in;
+    return shi_decode_block(reader, in, count, padded, scratch);
 }
 
 /* ---- Equirectangular panoramas --------------------------------------------------------------------------------------------------
@@ -2491,7 +2559,8 @@ SHI_INLINE shi_v shi_signs(const unsigned char *in, int count) {
 
 /* Adds a block of two rows: here[r] and, half a turn further, opposite[r]. Two rows share the loads of the table. */
 SHI_INLINE void shi_fold_block(int order, const unsigned char *const here[2], const unsigned char *const opposite[2], int count, int phases,
-                               const shi_columns *columns, const float turn[4], shi_v total[2][SHI_PHASES][SHI_SUMS]) {
+                               const shi_columns *columns, const float turn[4], shi_v total_a[SHI_PHASES][SHI_SUMS],
+                               shi_v total_b[SHI_PHASES][SHI_SUMS]) {
     const shi_v zero = shi_splat(0.0f);
     for (int phase = 0; phase < phases; phase++) {
         shi_fold_sums a = { zero, zero, zero, zero, zero }, b = a;
@@ -2502,8 +2571,8 @@ SHI_INLINE void shi_fold_block(int order, const unsigned char *const here[2], co
             shi_fold_add(order, here_a, opposite_a, columns->table + 4 * i, &a);
             shi_fold_add(order, here_b, opposite_b, columns->table + 4 * i, &b);
         }
-        shi_fold_turn(order, &a, turn, total[0][phase]);
-        shi_fold_turn(order, &b, turn, total[1][phase]);
+        shi_fold_turn(order, &a, turn, total_a[phase]);
+        shi_fold_turn(order, &b, turn, total_b[phase]);
     }
 }
 
@@ -2585,11 +2654,10 @@ SHI_INLINE void shi_fold_rows(int order, shi_reader *reader, const shi_columns *
     const int interleave = reader->layout.interleave, planes = reader->layout.planes, phases = shi_phases(interleave);
     double c = 1.0, s = 0.0;
     shi_scratch scratch[4];
-    shi_v total[3][2][SHI_PHASES][SHI_SUMS];
-    for (int plane = 0; plane < planes; plane++)
-        for (int phase = 0; phase < phases; phase++)
-            for (int i = 0; i < SHI_SUMS; i++)
-                total[plane][0][phase][i] = total[plane][1][phase][i] = shi_splat(0.0f);
+    shi_v total[2][SHI_PHASES][SHI_SUMS];
+    for (int phase = 0; phase < planes + phases - 1; phase++)
+        for (int i = 0; i < SHI_SUMS; i++)
+            total[0][phase][i] = total[1][phase][i] = shi_splat(0.0f);
     for (int x = 0; x < end; x += SHI_BLOCK) {
         const int count = end - x < SHI_BLOCK ? end - x : SHI_BLOCK, padded = (int)shi_round_up((size_t)count);
         const float turn[4] = { (float)c, (float)s, (float)(c * c - s * s), (float)(2.0 * c * s) };
@@ -2603,7 +2671,7 @@ SHI_INLINE void shi_fold_rows(int order, shi_reader *reader, const shi_columns *
                                                            shi_signs(opposite[r], padded * interleave)));
         }
         for (int plane = 0; plane < planes; plane++) {
-            shi_fold_block(order, here, opposite, padded * interleave, phases, columns, turn, total[plane]);
+            shi_fold_block(order, here, opposite, padded * interleave, phases, columns, turn, total[0] + plane, total[1] + plane);
             for (int r = 0; r < 2; r++) {
                 here[r] += SHI_BLOCK * sizeof(float);
                 opposite[r] += SHI_BLOCK * sizeof(float);
@@ -2616,7 +2684,7 @@ SHI_INLINE void shi_fold_rows(int order, shi_reader *reader, const shi_columns *
     for (int r = 0; r < rows; r++)
         for (int plane = 0; plane < planes; plane++)
             for (int phase = 0; phase < phases; phase++)
-                shi_row_spread(order, &w[r], total[plane][r][phase], group->moment[plane + phase]);
+                shi_row_spread(order, &w[r], total[r][plane + phase], group->moment[plane + phase]);
 }
 
 SHI_FUNCTION void shi_group_clear(shi_group *group) {
@@ -2657,23 +2725,20 @@ SHI_FUNCTION int shi_group_sum(int order, const shi_layout *layout, const shi_gr
     return finite;
 }
 
-/* Sums a group of rows. Values are looked at one by one only where the sums say that something is wrong with one of them, and once
- * more, scaled down, where finite values overflow. */
-SHI_INLINE void shi_equirect_group(int order, shi_reader *reader, const shi_columns *columns, int row, int rows,
-                                   const shi_row_weights *w, double moment[3][SHI_MOMENTS]) {
-    const sh_report before = reader->report;
-    for (int attempt = 0; attempt < 3; attempt++) {
-        shi_group group;
-        shi_group_clear(&group);
-        reader->report = before;
-        reader->careful = attempt > 0;
-        reader->scale = attempt < 2 ? 1.0f : 1.0f / 16777216.0f; /* 2^-24 */
-        for (int r = 0; r < rows; r += 2)
-            shi_fold_rows(order, reader, columns, row + r, rows - r < 2 ? 1 : 2, w + r, &group);
-        if (shi_group_sum(order, &reader->layout, &group, moment) &&
-            (reader->careful || !shi_any_sign(group.signs)))
-            break;
-    }
+enum { SHI_ATTEMPTS = 3 };
+
+/* Values are looked at one by one only where the sums of a group say that something is wrong with one of them: in a second attempt;
+ * and in a third they are scaled down, where finite values overflow. */
+SHI_FUNCTION void shi_group_begin(shi_reader *reader, int attempt, const sh_report *before, shi_group *group) {
+    shi_group_clear(group);
+    reader->report = *before;
+    reader->careful = attempt > 0;
+    reader->scale = attempt < 2 ? 1.0f : 1.0f / 16777216.0f; /* 2^-24 */
+}
+
+/* Whether the group's moments are good. */
+SHI_FUNCTION int shi_group_end(int order, const shi_reader *reader, const shi_group *group, double moment[3][SHI_MOMENTS]) {
+    return shi_group_sum(order, &reader->layout, group, moment) && (reader->careful || !shi_any_sign(group->signs));
 }
 
 /* Adds a group's moments of one channel to the nine sums. */
@@ -2717,12 +2782,38 @@ SHI_FUNCTION void shi_row_weights_init(int row, int count, int height, int point
     }
 }
 
+SHI_FUNCTION void shi_report_add(const shi_reader *reader, uint64_t texels, sh_report *report) {
+    if (report) {
+        report->texels += texels;
+        report->nonfinite += reader->report.nonfinite;
+        report->negative += reader->report.negative;
+    }
+}
+
+/* What can be said of a job without looking at its format. */
+SHI_FUNCTION int shi_rows_check(int order, const shi_rows *job, int known_flags) {
+    if (!shi_order_ok(order) || !job->image || !job->accum || job->flags & ~(unsigned)known_flags)
+        return SH_ERROR_ARGUMENT;
+    return job->first < 0 || job->count < 0 || job->first > job->image->height - job->count ? SH_ERROR_SIZE : SH_OK;
+}
+
+/* Coefficients and report from the sums over a whole image; nothing where there was an error. */
+SHI_INLINE int shi_project_finish(int status, int order, const sh_image *image, const sh_accum *accum, const sh_report *found, float *c,
+                                  sh_report *report) {
+    if (status == SH_OK) {
+        sh_accum_finish(order, sh_image_channels(image), accum, c);
+        if (report)
+            *report = *found;
+    }
+    return status;
+}
+
 SHI_INLINE int shi_equirect_rows(int order, const shi_rows *job) {
     const sh_image *image = job->image;
     const int end = job->first + job->count, point = (job->flags & SH_POINT_TEXELS) != 0;
     shi_reader reader;
     shi_columns columns;
-    const int status = shi_reader_init(image, job->flags, job->report, &reader);
+    const int status = shi_reader_init(image, 1, job->flags, job->report, &reader);
     if (status != SH_OK)
         return status;
     shi_columns_init(image->width, reader.layout.interleave, point, &columns);
@@ -2731,18 +2822,22 @@ SHI_INLINE int shi_equirect_rows(int order, const shi_rows *job) {
         double moment[3][SHI_MOMENTS] = { { 0 } };
         shi_row_weights w[SHI_GROUP];
         shi_row_weights_init(row, rows, image->height, point, w);
-        shi_equirect_group(order, &reader, &columns, row, rows, w, moment);
+        const sh_report before = reader.report;
+        for (int attempt = 0; attempt < SHI_ATTEMPTS; attempt++) {
+            shi_group group;
+            shi_group_begin(&reader, attempt, &before, &group);
+            for (int r = 0; r < rows; r += 2)
+                shi_fold_rows(order, &reader, &columns, row + r, rows - r < 2 ? 1 : 2, w + r, &group);
+            if (shi_group_end(order, &reader, &group, moment))
+                break;
+        }
         for (int k = 0; k < reader.layout.channels; k++) {
             shi_equirect_add(&reader, &columns, moment[k], job->accum + k);
             for (int r = 0; r < rows; r++)
                 job->accum[k].weight += w[r].one;
         }
     }
-    if (job->report) {
-        job->report->texels += (uint64_t)job->count * (uint64_t)image->width;
-        job->report->nonfinite += reader.report.nonfinite;
-        job->report->negative += reader.report.negative;
-    }
+    shi_report_add(&reader, (uint64_t)job->count * (uint64_t)image->width, job->report);
     return SH_OK;
 }
 SHI_FUNCTION int shi_equirect_rows_l0(const shi_rows *job) { return shi_equirect_rows(SH_L0, job); }
@@ -2752,27 +2847,393 @@ SHI_FUNCTION int shi_equirect_rows_l2(const shi_rows *job) { return shi_equirect
 SHI_INLINE int sh_project_equirect_rows(int order, const sh_image *image, unsigned flags, int first_row, int row_count,
                                         sh_accum *accum, sh_report *report) {
     const shi_rows job = { image, flags, first_row, row_count, accum, report };
-    if (!shi_order_ok(order) || !image || !accum || flags & ~(unsigned)(SH_CLAMP_NEGATIVE | SH_POINT_TEXELS | SH_CLOCKWISE))
-        return SH_ERROR_ARGUMENT;
-    if (first_row < 0 || row_count < 0 || first_row > image->height - row_count)
-        return SH_ERROR_SIZE;
+    const int status = shi_rows_check(order, &job, SH_CLAMP_NEGATIVE | SH_POINT_TEXELS | SH_CLOCKWISE);
+    if (status != SH_OK)
+        return status;
     return order == SH_L0 ? shi_equirect_rows_l0(&job) : order == SH_L1 ? shi_equirect_rows_l1(&job) : shi_equirect_rows_l2(&job);
 }
 
 SHI_INLINE int sh_project_equirect(int order, const sh_image *image, unsigned flags, float *c, sh_report *report) {
     sh_accum accum[3];
     sh_report found = { 0, 0, 0 };
-    if (!image || !c)
-        return SH_ERROR_ARGUMENT;
     sh_accum_clear(3, accum);
-    const int status = sh_project_equirect_rows(order, image, flags, 0, image->height, accum, report ? &found : NULL);
+    const int status = !image || !c ? SH_ERROR_ARGUMENT
+                                    : sh_project_equirect_rows(order, image, flags, 0, image->height, accum, report ? &found : NULL);
+    return shi_project_finish(status, order, image, accum, &found, c, report);
+}
+
+/* ---- Cube and octahedral maps ---------------------------------------------------------------------------------------------------
+ * A row of texels, or a part of it, lies on a plane: its directions are (P + u Q) / rho for fixed P and Q. So it needs five sums over
+ * its texels: w, w / rho, w u / rho, w / rho^2, w u / rho^2, where w is the texel's share of the sphere; w u^2 / rho^2 follows from
+ * |P + u Q|^2 = rho^2. The factors of a row serve all rows that differ by the sign of v, and on a cube all faces. */
+
+enum { SHI_W, SHI_WR, SHI_WRU, SHI_WRR, SHI_WRRU };
+
+/* The plane (P + u Q) / rho of a row's part, as the factors by which its sums make the moments: x, y, z from w / rho and w u / rho;
+ * xx, xy, xz, yy, yz from w, w / rho^2 and w u / rho^2. */
+typedef struct shi_plane {
+    float first[3][2], second[5][3];
+} shi_plane;
+
+SHI_FUNCTION shi_plane shi_plane_make(const double p[3], const double q[3]) {
+    static const int pair[5][2] = { { 0, 0 }, { 0, 1 }, { 0, 2 }, { 1, 1 }, { 1, 2 } };
+    const double pp = p[0] * p[0] + p[1] * p[1] + p[2] * p[2], qq = q[0] * q[0] + q[1] * q[1] + q[2] * q[2];
+    const double pq = p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
+    shi_plane plane;
+    for (int i = 0; i < 3; i++) {
+        plane.first[i][0] = (float)p[i];
+        plane.first[i][1] = (float)q[i];
+    }
+    for (int m = 0; m < 5; m++) { /* P P' wrr + (P Q' + Q P') wrru + Q Q' (w - |P|^2 wrr - 2 P.Q wrru) / |Q|^2 */
+        const int i = pair[m][0], j = pair[m][1];
+        const double square = q[i] * q[j] / qq;
+        plane.second[m][0] = (float)square;
+        plane.second[m][1] = (float)(p[i] * p[j] - square * pp);
+        plane.second[m][2] = (float)(p[i] * q[j] + q[i] * p[j] - 2.0 * square * pq);
+    }
+    return plane;
+}
+
+/* Factors of a block of texels: a vector of each of the five for each vector of floats, side by side. */
+typedef struct shi_factors {
+    float table[SHI_BLOCK * 4 * SHI_SUMS];
+} shi_factors;
+
+/* Mean of rho^-3 over the square of half-width e about (u, v), rho^2 = 1 + u^2 + v^2: its Taylor series to e^4, off by < 1e-7 of
+ * itself for e <= 1/16. t is 1 / rho^2, r is 1 / rho. */
+SHI_INLINE shi_v shi_cube_weight(shi_v u, shi_v v, shi_v t, shi_v r, float e) {
+    const shi_v p = shi_mul(u, u), q = shi_mul(v, v), pq = shi_mul(p, q), s = shi_add(p, q);
+    const shi_v squares = shi_madd(s, s, shi_mul(shi_splat(-2.0f), pq)); /* u^4 + v^4 */
+    const shi_v e2 = shi_mul(t, shi_madd(t, shi_splat(-2.5f), shi_splat(1.5f)));
+    /* ((f_uuuu + f_vvvv) / 120 + f_uuvv / 36) / f */
+    const shi_v quartic = shi_madd(shi_splat(945.0f / 120), squares, shi_mul(shi_splat(945.0f / 36), pq));
+    const shi_v quadratic = shi_madd(shi_mul(t, t), quartic, shi_mul(t, shi_mul(s, shi_splat(-630.0f / 120 - 105.0f / 36))));
+    const shi_v e4 = shi_mul(shi_mul(t, t), shi_add(quadratic, shi_splat(90.0f / 120 + 15.0f / 36)));
+    const shi_v series = shi_madd(shi_splat(e * e), shi_madd(shi_splat(e * e), e4, e2), shi_splat(1.0f));
+    return shi_mul(shi_mul(t, r), series);
+}
+
+/* The same for the octahedron: rho^2 = a^2 + b^2 + (1 - a - b)^2, a and b the absolute values of u and v; beyond the fold a + b = 1
+ * the map is its own mirror image. A texel cut by the fold counts as the triangle before it. To e^2: off by < 3e-6 for e <= 1/64. */
+SHI_INLINE shi_v shi_octahedron_weight(shi_v u, shi_v v, float e) {
+    const shi_v one = shi_splat(1.0f), minus = shi_splat(-1.0f), half = shi_splat(0.5f * e);
+    const shi_v au = shi_abs(u), av = shi_abs(v), over = shi_sub(shi_add(au, av), one);
+    const shi_m beyond = shi_less(half, over), cut = shi_less(shi_abs(over), half);
+    const shi_v shift = shi_select(cut, shi_splat(e / 3), shi_splat(0.0f)); /* to the triangle's centroid */
+    const shi_v a = shi_sub(shi_select(beyond, shi_sub(one, av), au), shift), b = shi_sub(shi_select(beyond, shi_sub(one, au), av), shift);
+    const shi_v c = shi_sub(shi_sub(one, a), b), g = shi_madd(a, a, shi_madd(b, b, shi_mul(c, c)));
+    const shi_v t = shi_div(one, g), ga = shi_sub(a, c), gb = shi_sub(b, c); /* half the derivatives of g */
+    /* f_aa + f_bb and f_ab, over f = g^(-3/2) */
+    const shi_v laplacian = shi_mul(t, shi_madd(shi_mul(shi_splat(15.0f), t), shi_madd(ga, ga, shi_mul(gb, gb)), shi_splat(-12.0f)));
+    const shi_v mixed = shi_mul(t, shi_madd(shi_mul(shi_splat(15.0f), t), shi_mul(ga, gb), shi_splat(-3.0f)));
+    const shi_v triangle = shi_mul(shi_splat(e * e / 9), shi_madd(minus, mixed, laplacian));
+    const shi_v series = shi_select(cut, triangle, shi_mul(shi_splat(e * e / 6), laplacian));
+    return shi_mul(shi_mul(t, shi_sqrt(t)), shi_add(one, series));
+}
+
+/* A vector of one value per pixel to one per interleaved float. */
+SHI_INLINE void shi_expand(shi_v a, int interleave, float *out, size_t step) {
+    if (interleave == 1) {
+        shi_store(out, a);
+    } else if (interleave == 3) {
+        shi_store(out, shi_repeat3(a, 0));
+        shi_store(out + step, shi_repeat3(a, 1));
+        shi_store(out + 2 * step, shi_repeat3(a, 2));
+    } else {
+        float pixel[SHI_LANES];
+        shi_store(pixel, a);
+        for (int i = 0; i < 4 * SHI_LANES; i++)
+            out[(size_t)(i / SHI_LANES) * step + (size_t)(i % SHI_LANES)] = pixel[i / 4];
+    }
+}
+
+enum { SHI_CUBE, SHI_OCTAHEDRON };
+
+/* The factors of texels [x, x + count) of row y of a size x size map; returns the texels' share of the sphere. Texels of small maps
+ * are divided until the series holds. */
+SHI_INLINE double shi_factors_init(int order, int kind, int size, int y, int x, int count, int interleave, shi_factors *factors) {
+    const int fine = kind == SHI_CUBE ? 16 : 64, halves = size % 2 && kind == SHI_OCTAHEDRON ? 2 : 1;
+    const int parts = halves * (size < fine ? (fine + size - 1) / size : 1); /* the octahedron's axes and fold lie between parts */
+    const float unit = 1.0f / (float)size, e = unit / (float)parts;
+    const float area = (float)(1.0 / (SHI_PI * (double)size * (double)size * (double)parts * (double)parts)); /* (2 e)^2 / (4 pi) */
+    const float vy = (float)(2 * y + 1 - size) * unit;
+    float lane[SHI_LANES], weight[SHI_LANES];
+    shi_v whole = shi_splat(0.0f); /* weights of whole vectors */
+    double share = 0.0;
+    for (int i = 0; i < SHI_LANES; i++)
+        lane[i] = (float)(2 * i + 1 - size);
+    for (int i = 0; i < count; i += SHI_LANES) {
+        const shi_v u = shi_mul(shi_add(shi_load(lane), shi_splat((float)(2 * (x + i)))), shi_splat(unit)), v = shi_splat(vy);
+        const shi_v au = shi_abs(u), av = shi_abs(v), one = shi_splat(1.0f);
+        const shi_v beyond_x = shi_sub(one, av), beyond_y = shi_sub(one, au), z = shi_sub(shi_sub(one, au), av);
+        const shi_m beyond = shi_less(z, shi_splat(0.0f));
+        const shi_v px = kind == SHI_CUBE ? u : shi_select(beyond, beyond_x, au), py = kind == SHI_CUBE ? v : shi_select(beyond, beyond_y, av);
+        const shi_v pz = kind == SHI_CUBE ? one : z, g = shi_madd(px, px, shi_madd(py, py, shi_mul(pz, pz)));
+        const shi_v t = shi_div(one, g), r = shi_sqrt(t);
+        shi_v w = shi_splat(0.0f);
+        for (int j = 0; j < parts * parts; j++) {
+            const shi_v su = shi_add(u, shi_splat((float)(2 * (j % parts) + 1 - parts) * e));
+            const shi_v sv = shi_add(v, shi_splat((float)(2 * (j / parts) + 1 - parts) * e));
+            if (kind == SHI_OCTAHEDRON) {
+                w = shi_add(w, shi_octahedron_weight(su, sv, e));
+            } else if (parts == 1) {
+                w = shi_cube_weight(u, v, t, r, e);
+            } else {
+                const shi_v st = shi_div(one, shi_madd(su, su, shi_madd(sv, sv, one)));
+                w = shi_add(w, shi_cube_weight(su, sv, st, shi_sqrt(st), e));
+            }
+        }
+        w = shi_mul(w, shi_splat(area));
+        if (count - i >= SHI_LANES) {
+            whole = shi_add(whole, w);
+        } else {
+            shi_store(weight, w);
+            for (int j = 0; j < count - i; j++)
+                share += (double)weight[j];
+        }
+        const shi_v wr = shi_mul(w, r), wrr = shi_mul(w, t);
+        const size_t step = SHI_SUMS * SHI_LANES;
+        float *out = factors->table + (size_t)(i * interleave) * SHI_SUMS;
+        shi_expand(w, interleave, out + SHI_W * SHI_LANES, step);
+        if (order >= SH_L1) {
+            shi_expand(wr, interleave, out + SHI_WR * SHI_LANES, step);
+            shi_expand(shi_mul(wr, u), interleave, out + SHI_WRU * SHI_LANES, step);
+        }
+        if (order >= SH_L2) {
+            shi_expand(wrr, interleave, out + SHI_WRR * SHI_LANES, step);
+            shi_expand(shi_mul(wrr, u), interleave, out + SHI_WRRU * SHI_LANES, step);
+        }
+    }
+    shi_store(weight, whole);
+    for (int i = 0; i < SHI_LANES; i++)
+        share += (double)weight[i];
+    return share;
+}
+
+SHI_INLINE void shi_plane_add(int order, shi_v texels, const float *table, shi_v s[SHI_SUMS]) {
+    s[SHI_W] = shi_madd(texels, shi_load(table + SHI_W * SHI_LANES), s[SHI_W]);
+    if (order >= SH_L1) {
+        s[SHI_WR] = shi_madd(texels, shi_load(table + SHI_WR * SHI_LANES), s[SHI_WR]);
+        s[SHI_WRU] = shi_madd(texels, shi_load(table + SHI_WRU * SHI_LANES), s[SHI_WRU]);
+    }
+    if (order >= SH_L2) {
+        s[SHI_WRR] = shi_madd(texels, shi_load(table + SHI_WRR * SHI_LANES), s[SHI_WRR]);
+        s[SHI_WRRU] = shi_madd(texels, shi_load(table + SHI_WRRU * SHI_LANES), s[SHI_WRRU]);
+    }
+}
+
+/* Adds a block of two rows that share their factors. */
+SHI_INLINE void shi_plane_block(int order, const unsigned char *row_a, const unsigned char *row_b, int count, int phases,
+                                const shi_factors *factors, shi_v total_a[SHI_PHASES][SHI_SUMS], shi_v total_b[SHI_PHASES][SHI_SUMS]) {
+    for (int phase = 0; phase < phases; phase++) {
+        shi_v *ta = total_a[phase], *tb = total_b[phase];
+        shi_v a[SHI_SUMS] = { ta[0], ta[1], ta[2], ta[3], ta[4] }, b[SHI_SUMS] = { tb[0], tb[1], tb[2], tb[3], tb[4] };
+        for (int i = phase * SHI_LANES; i < count; i += phases * SHI_LANES) {
+            const float *table = factors->table + i * SHI_SUMS;
+            shi_plane_add(order, shi_load(row_a + (size_t)i * sizeof(float)), table, a);
+            shi_plane_add(order, shi_load(row_b + (size_t)i * sizeof(float)), table, b);
+        }
+        for (int i = 0; i < SHI_SUMS; i++) {
+            ta[i] = a[i];
+            tb[i] = b[i];
+        }
+    }
+}
+
+SHI_INLINE void shi_plane_spread(int order, const shi_plane *plane, const shi_v s[SHI_SUMS], shi_v moment[SHI_MOMENTS]) {
+    moment[SH_R0] = shi_add(moment[SH_R0], s[SHI_W]);
+    if (order >= SH_L1)
+        for (int i = 0; i < 3; i++) {
+            const float *f = plane->first[i];
+            moment[SH_X + i] = shi_madd(shi_splat(f[0]), s[SHI_WR], shi_madd(shi_splat(f[1]), s[SHI_WRU], moment[SH_X + i]));
+        }
+    if (order >= SH_L2)
+        for (int i = 0; i < 5; i++) {
+            const float *f = plane->second[i];
+            const shi_v sum = shi_madd(shi_splat(f[0]), s[SHI_W], moment[SH_XX + i]);
+            moment[SH_XX + i] = shi_madd(shi_splat(f[1]), s[SHI_WRR], shi_madd(shi_splat(f[2]), s[SHI_WRRU], sum));
+        }
+}
+
+/* One row's part: where its texels are, the plane that it lies on. */
+typedef struct shi_part {
+    const sh_image *image;
+    int row;
+    shi_plane plane;
+} shi_part;
+
+enum { SHI_PARTS = 12 }; /* six faces of a cube, two rows each */
+
+/* Sums columns [begin, end) of parts that share the factors of row y, and spreads the sums into the group. Returns the share of the
+ * sphere of one part. */
+SHI_INLINE double shi_plane_parts(int order, int kind, shi_reader *reader, int y, int begin, int end, const shi_part *part, int parts,
+                                  shi_group *group) {
+    const int size = reader->image->width, interleave = reader->layout.interleave, planes = reader->layout.planes;
+    const int phases = shi_phases(interleave);
+    shi_v total[SHI_PARTS][SHI_PHASES][SHI_SUMS];
+    shi_scratch scratch[2];
+    double share = 0.0;
+    for (int i = 0; i < parts + parts % 2; i++)
+        for (int phase = 0; phase < planes + phases - 1; phase++)
+            for (int j = 0; j < SHI_SUMS; j++)
+                total[i][phase][j] = shi_splat(0.0f);
+    for (int x = begin; x < end; x += SHI_BLOCK) {
+        const int count = end - x < SHI_BLOCK ? end - x : SHI_BLOCK, padded = (int)shi_round_up((size_t)count);
+        shi_factors factors;
+        share += shi_factors_init(order, kind, size, y, x, count, interleave, &factors);
+        for (int i = 0; i < parts; i += 2) {
+            const int pair = i + 1 < parts;
+            shi_reader_use(reader, part[i].image);
+            const unsigned char *a = shi_read_block(reader, part[i].row, x, count, padded, &scratch[0]), *b = a;
+            if (pair) {
+                shi_reader_use(reader, part[i + 1].image);
+                b = shi_read_block(reader, part[i + 1].row, x, count, padded, &scratch[1]);
+            }
+            if (reader->look_for_negative)
+                group->signs = shi_or(group->signs, shi_or(shi_signs(a, padded * interleave), shi_signs(b, padded * interleave)));
+            for (int plane = 0; plane < planes; plane++)
+                shi_plane_block(order, a + (size_t)plane * SHI_BLOCK * sizeof(float), b + (size_t)plane * SHI_BLOCK * sizeof(float),
+                                padded * interleave, phases, &factors, total[i] + plane, total[i + 1] + plane);
+        }
+    }
+    for (int i = 0; i < parts; i++)
+        for (int plane = 0; plane < planes; plane++)
+            for (int phase = 0; phase < phases; phase++)
+                shi_plane_spread(order, &part[i].plane, total[i][plane + phase], group->moment[plane + phase]);
+    return share;
+}
+
+/* Directions of u, v and the face's centre: faces +x, -x, +y, -y, +z, -z as OpenGL and Direct3D lay them out, rows from the top. */
+SHI_FUNCTION shi_plane shi_cube_plane(int face, double v) {
+    static const signed char axes[6][3][3] = {
+        { { 0, 0, -1 }, { 0, -1, 0 }, { 1, 0, 0 } }, { { 0, 0, 1 }, { 0, -1, 0 }, { -1, 0, 0 } },
+        { { 1, 0, 0 }, { 0, 0, 1 }, { 0, 1, 0 } },   { { 1, 0, 0 }, { 0, 0, -1 }, { 0, -1, 0 } },
+        { { 1, 0, 0 }, { 0, -1, 0 }, { 0, 0, 1 } },  { { -1, 0, 0 }, { 0, -1, 0 }, { 0, 0, -1 } },
+    };
+    double p[3], q[3];
+    for (int i = 0; i < 3; i++) {
+        q[i] = axes[face][0][i];
+        p[i] = axes[face][2][i] + v * axes[face][1][i];
+    }
+    return shi_plane_make(p, q);
+}
+
+/* Row y of all faces and, if `mirrored`, row size - 1 - y as well. Returns their share of the sphere. */
+SHI_INLINE double shi_cube_row(int order, shi_reader *reader, const sh_image *face, int y, int mirrored, shi_group *group) {
+    const int size = face->width;
+    const double v = (2.0 * y + 1.0 - size) / size;
+    shi_part part[SHI_PARTS];
+    int parts = 0;
+    for (int i = 0; i < 6; i++)
+        for (int side = 0; side <= mirrored; side++) {
+            part[parts].image = face + i;
+            part[parts].row = side ? size - 1 - y : y;
+            part[parts++].plane = shi_cube_plane(i, side ? -v : v);
+        }
+    return parts * shi_plane_parts(order, SHI_CUBE, reader, y, 0, size, part, parts, group);
+}
+
+/* The plane of the octahedron's row v where u has the sign `side`: within the fold, |u| + |v| <= 1, or beyond it. */
+SHI_FUNCTION shi_plane shi_octahedron_plane(double v, int side, int beyond) {
+    const double k = v < 0 ? 1 + v : 1 - v, sv = v < 0 ? -1 : 1;
+    const double p[3] = { beyond ? k * side : 0.0, beyond ? sv : v, k };
+    const double q[3] = { beyond ? 0.0 : 1.0, beyond ? -side * sv : 0.0, (double)-side };
+    return shi_plane_make(p, q);
+}
+
+SHI_INLINE double shi_octahedron_row(int order, shi_reader *reader, const sh_image *image, int y, int mirrored, shi_group *group) {
+    const int size = image->width, a = 2 * y + 1 > size ? 2 * y + 1 - size : size - 2 * y - 1; /* a / size = |v| */
+    const double v = (2.0 * y + 1.0 - size) / size;
+    const int edge[5] = { 0, a / 2, size / 2, size - a / 2, size }; /* columns where the plane changes */
+    double share = 0.0;
+    for (int i = 0; i < 4; i++) {
+        const int side = i < 2 ? -1 : 1, beyond = i == 0 || i == 3;
+        const shi_part part[2] = { { image, y, shi_octahedron_plane(v, side, beyond) },
+                                   { image, size - 1 - y, shi_octahedron_plane(-v, side, beyond) } };
+        share += (1 + mirrored) * shi_plane_parts(order, SHI_OCTAHEDRON, reader, y, edge[i], edge[i + 1], part, 1 + mirrored, group);
+    }
+    return share;
+}
+
+/* Adds a group's moments of one channel to the nine sums. */
+SHI_FUNCTION void shi_plane_finish(int order, double scale, const double moment[SHI_MOMENTS], sh_accum *accum) {
+    for (int i = 0; i < SH_COUNT(order); i++)
+        accum->sum[i] += (moment[i] - (i == SH_XX || i == SH_YY ? moment[SH_R0] / 3 : 0.0)) / scale;
+}
+
+SHI_INLINE int shi_plane_rows(int order, int kind, const shi_rows *job) {
+    const int images = kind == SHI_CUBE ? 6 : 1, size = job->image->width, end = job->first + job->count;
+    shi_reader reader;
+    const int status = shi_reader_init(job->image, images, job->flags, job->report, &reader);
     if (status != SH_OK)
         return status;
-    sh_accum_total(order, sh_image_channels(image), accum, c);
-    if (report)
-        *report = found;
+    if (job->image->width != job->image->height)
+        return SH_ERROR_SIZE;
+    for (int y = job->first; y < end; y++) {
+        const int mirror = size - 1 - y, mirrored = mirror > y && mirror < end;
+        const sh_report before = reader.report;
+        double moment[3][SHI_MOMENTS] = { { 0 } }, share = 0.0;
+        if (mirror >= job->first && mirror < y)
+            continue; /* done with its mirror image */
+        for (int attempt = 0; attempt < SHI_ATTEMPTS; attempt++) {
+            shi_group group;
+            shi_group_begin(&reader, attempt, &before, &group);
+            share = kind == SHI_CUBE ? shi_cube_row(order, &reader, job->image, y, mirrored, &group)
+                                     : shi_octahedron_row(order, &reader, job->image, y, mirrored, &group);
+            if (shi_group_end(order, &reader, &group, moment))
+                break;
+        }
+        for (int k = 0; k < reader.layout.channels; k++) {
+            shi_plane_finish(order, (double)reader.scale, moment[k], job->accum + k);
+            job->accum[k].weight += share;
+        }
+    }
+    shi_report_add(&reader, (uint64_t)images * (uint64_t)job->count * (uint64_t)size, job->report);
     return SH_OK;
 }
+SHI_FUNCTION int shi_cube_rows_l0(const shi_rows *job) { return shi_plane_rows(SH_L0, SHI_CUBE, job); }
+SHI_FUNCTION int shi_cube_rows_l1(const shi_rows *job) { return shi_plane_rows(SH_L1, SHI_CUBE, job); }
+SHI_FUNCTION int shi_cube_rows_l2(const shi_rows *job) { return shi_plane_rows(SH_L2, SHI_CUBE, job); }
+SHI_FUNCTION int shi_octahedron_rows_l0(const shi_rows *job) { return shi_plane_rows(SH_L0, SHI_OCTAHEDRON, job); }
+SHI_FUNCTION int shi_octahedron_rows_l1(const shi_rows *job) { return shi_plane_rows(SH_L1, SHI_OCTAHEDRON, job); }
+SHI_FUNCTION int shi_octahedron_rows_l2(const shi_rows *job) { return shi_plane_rows(SH_L2, SHI_OCTAHEDRON, job); }
+
+SHI_INLINE int sh_project_cubemap_rows(int order, const sh_image face[6], unsigned flags, int first_row, int row_count, sh_accum *accum,
+                                       sh_report *report) {
+    const shi_rows job = { face, flags, first_row, row_count, accum, report };
+    const int status = shi_rows_check(order, &job, SH_CLAMP_NEGATIVE);
+    if (status != SH_OK)
+        return status;
+    return order == SH_L0 ? shi_cube_rows_l0(&job) : order == SH_L1 ? shi_cube_rows_l1(&job) : shi_cube_rows_l2(&job);
+}
+
+SHI_INLINE int sh_project_octahedral_rows(int order, const sh_image *image, unsigned flags, int first_row, int row_count,
+                                          sh_accum *accum, sh_report *report) {
+    const shi_rows job = { image, flags, first_row, row_count, accum, report };
+    const int status = shi_rows_check(order, &job, SH_CLAMP_NEGATIVE);
+    if (status != SH_OK)
+        return status;
+    return order == SH_L0 ? shi_octahedron_rows_l0(&job) : order == SH_L1 ? shi_octahedron_rows_l1(&job) : shi_octahedron_rows_l2(&job);
+}
+
+SHI_INLINE int sh_project_cubemap(int order, const sh_image face[6], unsigned flags, float *c, sh_report *report) {
+    sh_accum accum[3];
+    sh_report found = { 0, 0, 0 };
+    sh_accum_clear(3, accum);
+    const int status = !face || !c ? SH_ERROR_ARGUMENT
+                                   : sh_project_cubemap_rows(order, face, flags, 0, face->height, accum, report ? &found : NULL);
+    return shi_project_finish(status, order, face, accum, &found, c, report);
+}
+
+SHI_INLINE int sh_project_octahedral(int order, const sh_image *image, unsigned flags, float *c, sh_report *report) {
+    sh_accum accum[3];
+    sh_report found = { 0, 0, 0 };
+    sh_accum_clear(3, accum);
+    const int status = !image || !c ? SH_ERROR_ARGUMENT
+                                    : sh_project_octahedral_rows(order, image, flags, 0, image->height, accum, report ? &found : NULL);
+    return shi_project_finish(status, order, image, accum, &found, c, report);
+}
+
 /* ---- Batches of bounded irradiance and of the other models ----------------------------------------------------------------------
  * A channel's prepared model is splatted once per block; what it is decides the kernel. */
 
