@@ -70,13 +70,13 @@ static inline void closure_add(bench_list *list, const char *name, int kind, int
 /* ---- closure/prepare, analysis: an item is a probe ---- */
 
 enum { ANALYSIS_PREPARE, ANALYSIS_PREPARE_FLOOR, ANALYSIS_MIN, ANALYSIS_DERING };
-enum { ANALYSIS_PROBES = 256 };
+enum { ANALYSIS_PROBES = 256, ANALYSIS_NORMALS = 256 };
 
 typedef struct analysis_data {
-    const float *c;      /* in, limit */
+    const float *c, *normals; /* in, limit */
     float *out;          /* of the limit */
     sh_closure *closure; /* out */
-    float *value;
+    float *value, *searched;
 } analysis_data;
 
 static inline void analysis_prepare(bench_case *test) {
@@ -89,6 +89,8 @@ static inline void analysis_prepare(bench_case *test) {
     data->out = bench_alloc_floats(ANALYSIS_PROBES * set);
     data->closure = (sh_closure *)bench_alloc(3 * ANALYSIS_PROBES * sizeof *data->closure);
     data->value = bench_alloc_floats(4 * ANALYSIS_PROBES);
+    data->searched = bench_alloc_floats(ANALYSIS_PROBES);
+    data->normals = eval_directions(ANALYSIS_NORMALS);
     test->data = data;
     test->limit.in = c;
     test->limit.out = data->out;
@@ -112,16 +114,36 @@ static inline void analysis_run(bench_case *test) {
     }
 }
 
+/* Of an analysis, the least of 256 directions (one channel, no window tried); of preparing, evaluating the linear model at one normal. */
+static inline void analysis_baseline(bench_case *test) {
+    const analysis_data *d = (const analysis_data *)test->data;
+    const float up[3] = { 0.0f, 0.6f, 0.8f }, *n = d->normals;
+    for (size_t i = 0; i < ANALYSIS_PROBES; i++) {
+        const float *c = d->c + 3 * (size_t)SH_COUNT(test->order) * i;
+        float least = 1e30f, value[ANALYSIS_NORMALS];
+        if (test->kind < ANALYSIS_MIN)
+            for (int k = 0; k < 3; k++)
+                d->out[3 * i + (size_t)k] = sh_irradiance(test->order, c + k * SH_COUNT(test->order), up);
+        else {
+            sh_radiance_batch(SH_L2, 1, c, n, n + ANALYSIS_NORMALS, n + 2 * ANALYSIS_NORMALS, value, ANALYSIS_NORMALS);
+            for (int k = 0; k < ANALYSIS_NORMALS; k++)
+                least = value[k] < least ? value[k] : least;
+            d->searched[i] = least;
+        }
+    }
+}
+
 /* Minimum: against the radiance where it is said to be. De-ringing: what is still negative. Of R0. */
 static inline double analysis_error(bench_case *test, int of_baseline) {
     const analysis_data *d = (const analysis_data *)test->data;
     double error = 0;
-    (void)of_baseline;
     for (size_t i = 0; i < ANALYSIS_PROBES && test->kind >= ANALYSIS_MIN; i++) {
         const float *c = d->c + 27 * i, *out = d->out + 27 * i;
-        if (test->kind == ANALYSIS_MIN)
+        if (of_baseline)
+            error = bench_worse(error, (double)((d->searched[i] - sh_min(SH_L2, c, NULL)) / c[0]));
+        else if (test->kind == ANALYSIS_MIN)
             error = bench_worse(error, fabs((double)(d->value[4 * i] - sh_radiance(SH_L2, c, d->value + 4 * i + 1)) / (double)c[0]));
-        for (size_t k = 0; k < 27 && test->kind == ANALYSIS_DERING; k += 9)
+        for (size_t k = 0; k < 27 && test->kind == ANALYSIS_DERING && !of_baseline; k += 9)
             error = bench_worse(error, -(double)(sh_min(SH_L2, out + k, NULL) / out[k]));
     }
     return error;
@@ -135,6 +157,8 @@ static inline void analysis_add(bench_list *list, const char *name, int kind, in
     test->kind = kind;
     test->prepare = analysis_prepare;
     test->run = analysis_run;
+    test->baseline = kind < ANALYSIS_MIN ? "linear at 1 normal" : "least of 256";
+    test->run_baseline = analysis_baseline;
     test->limit.kind = BENCH_COPY;
     test->limit.read = test->limit.written = 3 * (size_t)SH_COUNT(order) * sizeof(float);
     test->error = analysis_error;
