@@ -74,8 +74,8 @@ enum { ANALYSIS_PROBES = 256, ANALYSIS_NORMALS = 256 };
 
 typedef struct analysis_data {
     const float *c, *normals; /* in, limit */
-    float *out;          /* of the limit */
-    sh_closure *closure; /* out */
+    float *out;               /* of the limit */
+    sh_closure *closure;      /* out */
     float *value, *searched;
 } analysis_data;
 
@@ -107,9 +107,15 @@ static inline void analysis_run(bench_case *test) {
             else
                 sh_closure_prepare(SH_L2, 3, c, 0, d->closure + 3 * i);
             break;
-        case ANALYSIS_PREPARE_FLOOR: sh_closure_prepare(SH_L2, 3, c, SH_AMBIENT_FLOOR, d->closure + 3 * i); break;
-        case ANALYSIS_MIN: d->value[4 * i] = sh_min(SH_L2, c, d->value + 4 * i + 1); break;
-        default: d->value[4 * i] = sh_dering(SH_L2, 3, c, SH_WINDOW_HANN, d->out + 27 * i); break;
+        case ANALYSIS_PREPARE_FLOOR:
+            sh_closure_prepare(SH_L2, 3, c, SH_AMBIENT_FLOOR, d->closure + 3 * i);
+            break;
+        case ANALYSIS_MIN:
+            d->value[4 * i] = sh_min(SH_L2, c, d->value + 4 * i + 1);
+            break;
+        default:
+            d->value[4 * i] = sh_dering(SH_L2, 3, c, SH_WINDOW_HANN, d->out + 27 * i);
+            break;
         }
     }
 }
@@ -142,7 +148,8 @@ static inline double analysis_error(bench_case *test, int of_baseline) {
         if (of_baseline)
             error = bench_worse(error, (double)((d->searched[i] - sh_min(SH_L2, c, NULL)) / c[0]));
         else if (test->kind == ANALYSIS_MIN)
-            error = bench_worse(error, fabs((double)(d->value[4 * i] - sh_radiance(SH_L2, c, d->value + 4 * i + 1)) / (double)c[0]));
+            error =
+                bench_worse(error, fabs((double)(d->value[4 * i] - sh_radiance(SH_L2, c, d->value + 4 * i + 1)) / (double)c[0]));
         for (size_t k = 0; k < 27 && test->kind == ANALYSIS_DERING && !of_baseline; k += 9)
             error = bench_worse(error, -(double)(sh_min(SH_L2, out + k, NULL) / out[k]));
     }
@@ -172,11 +179,11 @@ static inline void analysis_add(bench_list *list, const char *name, int kind, in
 enum { SKIP_PROBES = 4096, SKIP_LIGHTS = 4096, SKIP_NORMALS = 1024 };
 
 typedef struct skip_data {
-    const float *c, *normals;       /* all probes in order; x, y, z */
-    float *packed[3], *turned[3];   /* by order: sets, normals */
+    const float *c, *normals;     /* all probes in order; x, y, z */
+    float *packed[3], *turned[3]; /* by order: sets, normals */
     size_t index[SKIP_PROBES], first[4];
-    float *out, *all;               /* of the case, of the baseline */
-    const float *value;             /* of the lights */
+    float *out, *all;   /* of the case, of the baseline */
+    const float *value; /* of the lights */
     float sum[2][9];
 } skip_data;
 

@@ -25,7 +25,8 @@ static inline float *envs_read_pfm(const char *path, int *width, int *height) {
     float scale = 0.0f, *pixels = NULL;
     if (!file)
         return NULL;
-    if (fscanf(file, "PF %d %d %f", width, height, &scale) == 3 && fgetc(file) != EOF && scale < 0.0f && *width > 0 && *height > 0) {
+    if (fscanf(file, "PF %d %d %f", width, height, &scale) == 3 && fgetc(file) != EOF && scale < 0.0f && *width > 0 &&
+        *height > 0) {
         const size_t row = 3 * (size_t)*width;
         pixels = (float *)malloc(row * (size_t)*height * sizeof *pixels);
         for (int y = *height - 1; pixels && y >= 0; y--)
@@ -41,6 +42,15 @@ static inline float *envs_read_pfm(const char *path, int *width, int *height) {
 /* The share of the sphere of a texel in row y of `height`, `width` to a row. */
 static inline double envs_area(int y, int width, int height) {
     return (cos(envs_pi * y / height) - cos(envs_pi * (y + 1) / height)) / (2.0 * width);
+}
+
+/* The centre of texel i, row by row from +z. */
+static inline void envs_texel_direction(int i, float dir[3]) {
+    const double polar = envs_pi * (i / ENVS_WIDTH + 0.5) / (int)ENVS_HEIGHT;
+    const double azimuth = 2.0 * envs_pi * (i % ENVS_WIDTH + 0.5) / (int)ENVS_WIDTH;
+    dir[0] = (float)(sin(polar) * cos(azimuth));
+    dir[1] = (float)(sin(polar) * sin(azimuth));
+    dir[2] = (float)cos(polar);
 }
 
 /* Reduces a panorama whose sides are multiples of 128 x 64, negative values counting as 0. Returns 0 if they are not. */
@@ -59,13 +69,10 @@ static inline int envs_reduce(const float *pixels, int width, int height, envs_l
     for (int y = 0; y < ENVS_HEIGHT; y++)
         for (int x = 0; x < ENVS_WIDTH; x++) {
             const int texel = y * ENVS_WIDTH + x;
-            const double polar = envs_pi * (y + 0.5) / (int)ENVS_HEIGHT, azimuth = 2.0 * envs_pi * (x + 0.5) / (int)ENVS_WIDTH;
             light->weight[texel] = envs_area(y, ENVS_WIDTH, ENVS_HEIGHT);
             for (int k = 0; k < 3; k++)
                 light->value[k][texel] /= light->weight[texel];
-            light->dir[texel][0] = (float)(sin(polar) * cos(azimuth));
-            light->dir[texel][1] = (float)(sin(polar) * sin(azimuth));
-            light->dir[texel][2] = (float)cos(polar);
+            envs_texel_direction(texel, light->dir[texel]);
         }
     return 1;
 }

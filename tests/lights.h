@@ -37,7 +37,9 @@ static inline double lights_dot(const double a[3], const double b[3]) {
 static inline void lights_zonal(const double axis[3], int count, double from, double to, double sharpness, double value,
                                 lights_light *light) {
     double u[3], v[3];
-    const int least = fabs(axis[0]) < fabs(axis[1]) ? (fabs(axis[0]) < fabs(axis[2]) ? 0 : 2) : fabs(axis[1]) < fabs(axis[2]) ? 1 : 2;
+    const int least = fabs(axis[0]) < fabs(axis[1])   ? (fabs(axis[0]) < fabs(axis[2]) ? 0 : 2)
+                      : fabs(axis[1]) < fabs(axis[2]) ? 1
+                                                      : 2;
     double along = axis[least], length = sqrt(1.0 - along * along);
     for (int i = 0; i < 3; i++)
         u[i] = ((i == least) - along * axis[i]) / length;
@@ -58,7 +60,9 @@ static inline void lights_random(int kind, lights_light *light) {
     light->count = 0;
     lights_direction(axis);
     switch (kind) {
-    case 0: lights_add(axis, 1.0, light); break;
+    case 0:
+        lights_add(axis, 1.0, light);
+        break;
     case 1: /* a pair, often opposed */
         lights_add(axis, 1.0, light);
         if (test_below(2))
@@ -68,8 +72,12 @@ static inline void lights_random(int kind, lights_light *light) {
                 axis[i] = -axis[i];
         lights_add(axis, test_uniform(0.0, 1.0), light);
         break;
-    case 2: lights_zonal(axis, 32, test_uniform(-1.0, 1.0), 1.0, 0.0, 1.0, light); break;
-    case 3: lights_zonal(axis, 64, -1.0, 1.0, exp(test_uniform(-3.0, 5.0)), 1.0, light); break;
+    case 2:
+        lights_zonal(axis, 32, test_uniform(-1.0, 1.0), 1.0, 0.0, 1.0, light);
+        break;
+    case 3:
+        lights_zonal(axis, 64, -1.0, 1.0, exp(test_uniform(-3.0, 5.0)), 1.0, light);
+        break;
     case 4: {
         const double t = test_uniform(-1.0, 1.0);
         lights_zonal(axis, 16, t, t, 0.0, 1.0, light);

@@ -6,7 +6,6 @@
 
 enum { NORMALS = 50 };
 
-
 /* A random normal, one that nearly faces or nearly faces away from a light, or one at right angles to it: there the bounds close. */
 static void pick_normal(const lights_light *light, float n[3]) {
     const double *d = light->dir[test_below(light->count)];
@@ -26,7 +25,7 @@ static void pick_normal(const lights_light *light, float n[3]) {
 }
 
 typedef struct tally {
-    double beyond; /* worst violation of the bounds, in ulp of R0 */
+    double beyond;  /* worst violation of the bounds, in ulp of R0 */
     double outside; /* worst distance of a closure from its bounds */
     double negative;
     double antipodal; /* worst error of I(n) - I(-n) = 4 n.R1 by the closure */

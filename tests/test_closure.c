@@ -111,7 +111,8 @@ static void test_directional(void) {
 
 /* Every batch of one set, against its scalar function. */
 typedef void (*batch)(const float *c, int channels, const float *x, const float *y, const float *z, float *out, size_t count);
-typedef void (*batch_aos)(const float *c, int channels, const float *n, size_t n_stride, float *out, size_t out_stride, size_t count);
+typedef void (*batch_aos)(const float *c, int channels, const float *n, size_t n_stride, float *out, size_t out_stride,
+                          size_t count);
 typedef float (*scalar)(const float *c, const float n[3]);
 
 enum { CHANNELS = 5 };
@@ -133,10 +134,12 @@ static void geomerics(const float *c, int channels, const float *x, const float 
 static void zh3(const float *c, int channels, const float *x, const float *y, const float *z, float *out, size_t count) {
     sh_irradiance_zh3_batch(SH_L1, channels, c, x, y, z, out, count);
 }
-static void closure_l1_aos(const float *c, int channels, const float *n, size_t n_stride, float *out, size_t out_stride, size_t count) {
+static void closure_l1_aos(const float *c, int channels, const float *n, size_t n_stride, float *out, size_t out_stride,
+                           size_t count) {
     sh_irradiance_closure_batch_aos(SH_L1, channels, c, n, n_stride, out, out_stride, count);
 }
-static void closure_l2_aos(const float *c, int channels, const float *n, size_t n_stride, float *out, size_t out_stride, size_t count) {
+static void closure_l2_aos(const float *c, int channels, const float *n, size_t n_stride, float *out, size_t out_stride,
+                           size_t count) {
     sh_irradiance_closure_batch_aos(SH_L2, channels, c, n, n_stride, out, out_stride, count);
 }
 static void closure_floor_aos(const float *c, int channels, const float *n, size_t n_stride, float *out, size_t out_stride,
@@ -145,7 +148,8 @@ static void closure_floor_aos(const float *c, int channels, const float *n, size
     sh_closure_prepare(SH_L2, channels, c, SH_AMBIENT_FLOOR, closure);
     sh_closure_irradiance_batch_aos(SH_L2, channels, closure, n, n_stride, out, out_stride, count);
 }
-static void geomerics_aos(const float *c, int channels, const float *n, size_t n_stride, float *out, size_t out_stride, size_t count) {
+static void geomerics_aos(const float *c, int channels, const float *n, size_t n_stride, float *out, size_t out_stride,
+                          size_t count) {
     sh_irradiance_geomerics_batch_aos(SH_L1, channels, c, n, n_stride, out, out_stride, count);
 }
 static void zh3_aos(const float *c, int channels, const float *n, size_t n_stride, float *out, size_t out_stride, size_t count) {
@@ -187,9 +191,14 @@ static void pick_set(int order, int kind, float *c) {
     lights_light light;
     test_direction(d);
     switch (kind % 6) {
-    case 0: sh_add_sample(SH_L2, d, 1.0f, full); break;
-    case 1: test_fill(full, 9, -1.0, 1.0); break;
-    case 2: break;
+    case 0:
+        sh_add_sample(SH_L2, d, 1.0f, full);
+        break;
+    case 1:
+        test_fill(full, 9, -1.0, 1.0);
+        break;
+    case 2:
+        break;
     default:
         lights_random(kind % LIGHTS_KINDS, &light);
         lights_moments(&light, exp(test_uniform(-3.0, 3.0)), full);
@@ -290,17 +299,30 @@ static void test_fallbacks(void) {
         test_direction(n);
         memset(c, 0, sizeof c);
         switch (kind) {
-        case 0: test_fill(c, 9, -1.0, 1.0); c[0] = -fabsf(c[0]); break; /* R0 < 0 */
-        case 1: test_fill(c, 9, -1.0, 1.0); c[0] = 0.0f; break;
-        case 2: c[0] = 1.0f; c[1 + test_below(3)] = 1.01f; break;       /* |R1| > R0 */
-        case 3: c[0] = 1.0f; c[4] = -0.34f; break; /* <x^2> < 0; at L1 ambient */
-        case 4: /* a ringing window: the moments of a direction, R2 short */
+        case 0:
+            test_fill(c, 9, -1.0, 1.0);
+            c[0] = -fabsf(c[0]);
+            break; /* R0 < 0 */
+        case 1:
+            test_fill(c, 9, -1.0, 1.0);
+            c[0] = 0.0f;
+            break;
+        case 2:
+            c[0] = 1.0f;
+            c[1 + test_below(3)] = 1.01f;
+            break; /* |R1| > R0 */
+        case 3:
+            c[0] = 1.0f;
+            c[4] = -0.34f;
+            break; /* <x^2> < 0; at L1 ambient */
+        case 4:    /* a ringing window: the moments of a direction, R2 short */
             sh_add_sample(SH_L2, n, 1.0f, c);
             for (int k = 4; k < 9; k++)
                 c[k] *= 0.9f;
             test_direction(n);
             break;
-        default: break; /* black */
+        default:
+            break; /* black */
         }
         for (int k = 0; k < 9; k++)
             c[k] *= unit;
@@ -353,7 +375,8 @@ static void test_ambient(void) {
         sh_closure_prepare(SH_L2, 1, c, SH_AMBIENT_FLOOR, &floor);
         /* Legendre series of 4 max(0, t) up to L6; the bounds only bring it nearer to the truth. */
         const double t = (double)d[0] * (double)n[0] + (double)d[1] * (double)n[1] + (double)d[2] * (double)n[2], t2 = t * t;
-        const double p2 = (3 * t2 - 1) / 2, p4 = (35 * t2 * t2 - 30 * t2 + 3) / 8, p6 = (231 * t2 * t2 * t2 - 315 * t2 * t2 + 105 * t2 - 5) / 16;
+        const double p2 = (3 * t2 - 1) / 2, p4 = (35 * t2 * t2 - 30 * t2 + 3) / 8,
+                     p6 = (231 * t2 * t2 * t2 - 315 * t2 * t2 + 105 * t2 - 5) / 16;
         const double series = (double)ambient + 1 + 2 * t + 5 * p2 / 4 - 9 * p4 / 24 + 13 * p6 / 64;
         const double truth = (double)ambient + (t > 0 ? 4 * t : 0), value = (double)sh_closure_irradiance(SH_L2, &floor, n);
         const double beyond = fabs(value - truth) - fabs(series - truth);

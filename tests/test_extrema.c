@@ -17,11 +17,19 @@ static void pick_coefficients(int kind, float c[9]) {
     test_direction(d);
     test_direction(e);
     switch (kind % 12) {
-    case 0: test_fill(c + 1, 8, -1.0, 1.0); break;
-    case 1: test_fill(c + 4, 5, -1.0, 1.0); break;                         /* R1 = 0 */
-    case 2: test_fill(c + 1, 3, -1.0, 1.0); break;                         /* R2 = 0 */
-    case 3: sh_add_sample(SH_L2, d, (float)test_uniform(-1.0, 1.0), c); break; /* a double root, R1 along the other */
-    case 4:                                                                /* a double root, R1 anywhere */
+    case 0:
+        test_fill(c + 1, 8, -1.0, 1.0);
+        break;
+    case 1:
+        test_fill(c + 4, 5, -1.0, 1.0);
+        break; /* R1 = 0 */
+    case 2:
+        test_fill(c + 1, 3, -1.0, 1.0);
+        break; /* R2 = 0 */
+    case 3:
+        sh_add_sample(SH_L2, d, (float)test_uniform(-1.0, 1.0), c);
+        break; /* a double root, R1 along the other */
+    case 4:    /* a double root, R1 anywhere */
         sh_add_sample(SH_L2, d, 1.0f, c);
         test_fill(c + 1, 3, -1.0, 1.0);
         break;
@@ -40,7 +48,8 @@ static void pick_coefficients(int kind, float c[9]) {
         sh_add_sample(SH_L2, d, 1.0f, c);
         sh_add_sample(SH_L2, e, (float)exp(test_uniform(-20.0, -4.0)), c);
         break;
-    case 8: break; /* constant */
+    case 8:
+        break; /* constant */
     case 9:
         lights_random(test_below(LIGHTS_KINDS), &light);
         lights_moments(&light, 1.0, c);
@@ -52,7 +61,9 @@ static void pick_coefficients(int kind, float c[9]) {
             for (int i = 1; i < 9; i++)
                 c[i] *= i < 4 ? 1e-6f : 1e6f;
         break;
-    default: c[test_below(9)] = 1.0f; break;
+    default:
+        c[test_below(9)] = 1.0f;
+        break;
     }
 }
 
