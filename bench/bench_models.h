@@ -139,14 +139,14 @@ static inline void models_write(const models_chart *chart, FILE *file) {
         largest = chart->entry[i].error > largest ? chart->entry[i].error : largest;
     }
     const double x0 = 70, x1 = 730, y0 = 430, y1 = 50, low = log10(0.1), high = log10(slowest) + 0.25, top = 1.1 * largest;
-    fprintf(
-        file,
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 800 490\" font-family=\"sans-serif\" font-size=\"13\">\n"
-        "<rect width=\"800\" height=\"490\" fill=\"white\"/>\n"
-        "<text x=\"70\" y=\"28\" font-size=\"16\">Models of irradiance: mean RMS error over %d lights, against time (%s)</text>\n"
-        "<text x=\"400\" y=\"478\" text-anchor=\"middle\">ns per RGB normal</text>\n"
-        "<text x=\"18\" y=\"240\" text-anchor=\"middle\" transform=\"rotate(-90 18 240)\">RMS error / R0</text>\n",
-        chart->channels, SH_SIMD_NAME);
+    fprintf(file,
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 800 490\" font-family=\"sans-serif\" font-size=\"13\">\n"
+            "<rect width=\"800\" height=\"490\" fill=\"white\"/>\n"
+            "<text x=\"70\" y=\"28\" font-size=\"16\">Models of irradiance: mean RMS error over %d channels of lights, against "
+            "time (%s)</text>\n"
+            "<text x=\"400\" y=\"478\" text-anchor=\"middle\">ns per RGB normal</text>\n"
+            "<text x=\"18\" y=\"240\" text-anchor=\"middle\" transform=\"rotate(-90 18 240)\">RMS error / R0</text>\n",
+            chart->channels, SH_SIMD_NAME);
     for (double t = 0.1; log10(t) < high; t *= 10.0)
         for (int m = 1; m <= 5; m += m == 1 ? 1 : 3) {
             const double x = x0 + (log10(t * m) - low) / (high - low) * (x1 - x0);
@@ -164,16 +164,18 @@ static inline void models_write(const models_chart *chart, FILE *file) {
     for (int i = 0; i < MODELS_COUNT; i++) {
         const models_entry *e = &chart->entry[i];
         const double x = x0 + (log10(e->ns) - low) / (high - low) * (x1 - x0), y = y0 - e->error / top * (y0 - y1);
-        fprintf(file, "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"5\" fill=\"%s\"/><text x=\"%.1f\" y=\"%.1f\">%s %.3f</text>\n", x, y,
-                strstr(e->name, "closure") ? "#c2410c" : "#1d4ed8", x + 8, y - 5, e->name, e->error);
+        const int closure = strstr(e->name, "closure") != NULL, right = x > x1 - 100;
+        fprintf(file, "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"5\" fill=\"%s\"/>", x, y, closure ? "#c2410c" : "#1d4ed8");
+        fprintf(file, "<text x=\"%.1f\" y=\"%.1f\"%s>%s %.3f</text>\n", right ? x : x + 8, closure ? y + 15 : y - 7,
+                right ? " text-anchor=\"middle\"" : "", e->name, e->error);
     }
     fprintf(file, "</svg>\n");
 }
 
 /* Draws the chart and prints its numbers; 0, or the index + 1 of a panorama that cannot be read. */
 static inline int bench_models(FILE *file, const char *const *env, int env_count) {
-    static const char *const name[MODELS_COUNT] = { "L0",         "L1 linear", "ZH3",        "Geomerics",
-                                                    "L1 closure", "L2 linear", "L2 bounded", "L2 closure" };
+    static const char *const name[MODELS_COUNT] = { "L0",        "L1 linear",           "ZH3",       "Geomerics", "L1 closure",
+                                                    "L2 linear", "L2 bounded (scalar)", "L2 closure" };
     static envs_light light;
     models_chart chart;
     memset(&chart, 0, sizeof chart);
@@ -194,13 +196,13 @@ static inline int bench_models(FILE *file, const char *const *env, int env_count
             return i + 1;
         models_add_light(&light, &chart);
     }
-    printf("model          ns/RGB normal   RMS error / R0, %d channels\n", chart.channels);
+    printf("model                  ns/RGB normal   RMS error / R0, %d channels\n", chart.channels);
     for (int i = 0; i < MODELS_COUNT; i++) {
         models_entry *e = &chart.entry[i];
         e->name = name[i];
         e->error /= chart.channels;
         e->ns = models_time(i, &chart);
-        printf("%-12s %10.3f %16.4f\n", e->name, e->ns, e->error);
+        printf("%-20s %10.3f %16.4f\n", e->name, e->ns, e->error);
     }
     models_write(&chart, file);
     bench_free_all();

@@ -385,6 +385,63 @@ static void test_ambient(void) {
     CHECK(worst <= 4e-6);
 }
 
+/* Irradiance from a panorama averaged to ENVS_HEIGHT rows and, with exact areas, to fewer, as the sizes for a tolerance promise. */
+static void test_sizes(void) {
+    static const char *const name[3] = { "city", "night", "sunset" };
+    static envs_light light;
+    static float level[3 * ENVS_TEXELS];
+    const char *dir = getenv("SH_ENVS") ? getenv("SH_ENVS") : SH_ENVS_DIR;
+    test_section("sizes for a tolerance");
+    EQUAL(sh_equirect_size_for(SH_L0, 0.0f), 1);
+    EQUAL(sh_cubemap_size_for(SH_L0, 0.0f), 1);
+    for (int order = SH_L1; order <= SH_L2; order++)
+        for (float tolerance = 1.0f; tolerance > 1e-4f; tolerance *= 0.5f) {
+            CHECK(sh_equirect_size_for(order, tolerance) >= sh_cubemap_size_for(order, tolerance));
+            CHECK(sh_equirect_size_for(order, 0.5f * tolerance) == 2 * sh_equirect_size_for(order, tolerance));
+        }
+    for (int i = 0; i < 3; i++) {
+        char path[1024];
+        float fine[27];
+        snprintf(path, sizeof path, "%s/%s.pfm", dir, name[i]);
+        if (!envs_load(path, &light)) {
+            printf("skipped: no panorama %s\n", path);
+            return;
+        }
+        for (int height = ENVS_HEIGHT; height >= 4; height /= 2) {
+            const int step = ENVS_HEIGHT / height, width = 2 * height;
+            sh_image image = { level, 0, 0, 0, 3, SH_F32 };
+            float c[27], n[3];
+            image.width = width;
+            image.height = height;
+            for (int y = 0; y < height; y++)
+                for (int x = 0; x < width; x++)
+                    for (int k = 0; k < 3; k++) {
+                        double sum = 0.0, area = 0.0;
+                        for (int j = 0; j < step * step; j++) {
+                            const int texel = (y * step + j / step) * ENVS_WIDTH + x * step + j % step;
+                            sum += light.weight[texel] * light.value[k][texel];
+                            area += light.weight[texel];
+                        }
+                        level[3 * (y * width + x) + k] = (float)(sum / area);
+                    }
+            EQUAL(sh_project_equirect(SH_L2, &image, 0, c, NULL), SH_OK);
+            if (height == ENVS_HEIGHT)
+                memcpy(fine, c, sizeof fine);
+            for (int order = SH_L1; order <= SH_L2; order++) {
+                double worst = 0.0;
+                for (uint32_t j = 0; j < NORMALS; j++)
+                    for (int k = 0; k < 27; k += 9) {
+                        sh_direction_fibonacci(j, NORMALS, n);
+                        const double error = fabs((double)(sh_irradiance(order, c + k, n) - sh_irradiance(order, fine + k, n)));
+                        worst = error / (double)fine[k] > worst ? error / (double)fine[k] : worst;
+                    }
+                for (float tolerance = 2.0f; sh_equirect_size_for(order, tolerance) <= height; tolerance *= 0.9f)
+                    CHECK(worst <= (double)tolerance);
+            }
+        }
+    }
+}
+
 static void run_tests(void) {
     test_directional();
     test_ambient();
@@ -392,4 +449,5 @@ static void run_tests(void) {
     test_batches();
     test_many_channels();
     test_panoramas();
+    test_sizes();
 }
