@@ -51,7 +51,7 @@ static inline double closure_error(bench_case *test, int of_baseline) {
 }
 
 /* Instructions of the arithmetic units, each as long as a multiply-add: the L1 closure has 3 + 1 + 3 + 2, L2's 24 multiply-adds or
- * products, four comparisons and an addition, and a square root that they can hide. */
+ * products and five others, or two and no square root where the upper bound is out of reach, as here. */
 static inline void closure_add(bench_list *list, const char *name, int kind, int order, size_t operations) {
     bench_case *test = bench_add(list);
     snprintf(test->name, sizeof test->name, "eval/%s/L%d/rgb/soa/1024", name, order);

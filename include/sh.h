@@ -126,12 +126,12 @@ SHI_INLINE float sh_irradiance_opposite(int order, const float *c, const float n
 SHI_INLINE float sh_irradiance_ao(int order, const float *c, const float n[3], float cos_angle);
 
 /* ---- Bounded irradiance and closures: one channel of L1 or L2, one unit normal ---------------------------------------------------
- * The odd part of irradiance is 2 R1.n exactly, whatever the light. For light that is nowhere negative the even part, 2 <|n.w| f>,
- * lies between bounds that the coefficients imply. A closure estimates the bands that were left out from those that are known, and
- * stays between the bounds: never negative, I(n) - I(-n) = 4 n.R1 to rounding, exact for one directional light and for ambient light.
- * Coefficients that no such light has (R0 <= 0, |R1| > R0, or a moment matrix with an eigenvalue below -R0/512, which storage in
- * half floats stays clear of; R0 < 1e-34 counts as black) give the linear reconstruction clamped at 0. Rounding error <= 2e-6 R0 and, where the upper bound is
- * b R0 and decides, 1e-6 R0 / b, since it is a square root. */
+ * The odd part of irradiance is 2 R1.n exactly, whatever the light. For light that is nowhere negative the even part, 2 <|n.w|
+ * f>, lies between bounds that the coefficients imply. A closure estimates the bands that were left out from those that are
+ * known, and stays between the bounds: never negative, I(n) - I(-n) = 4 n.R1 to rounding, exact for one directional light and
+ * for ambient light. Coefficients that no such light has (R0 <= 0, |R1| > R0, or a moment matrix with an eigenvalue below
+ * -R0/512, which storage in half floats stays clear of; R0 < 1e-34 counts as black) give the linear reconstruction clamped at 0.
+ * Rounding error <= 2e-6 R0 and, where the upper bound is b R0 and decides, 1e-6 R0 / b, since it is a square root. */
 
 /* Bounds of the true irradiance / pi of any non-negative light that has these coefficients, tight given R0, n.R1 and n'R2 n.
  * L0: 0 and 4 R0. The upper one allows for an error of 8 ulp of R0 in the coefficients. Where they are no light's: lo = hi. */
@@ -141,9 +141,10 @@ SHI_INLINE void sh_irradiance_bounds(int order, const float *c, const float n[3]
  * of the linear reconstruction at L1 and L2. */
 SHI_INLINE float sh_irradiance_closure(int order, const float *c, const float n[3]);
 
-/* For comparison and compatibility, from L1: Geomerics' R0 (a + (1 - a) (p + 1) q^p), q = (1 + n.d) / 2, p = 1 + 2r, a = (1 - r) / (1 + r),
- * and ZH3 hallucination: linear L2 with R2 = R0 (.0619677 r + .804984 r^2) (dd' - I/3), clamped at 0, where d = R1 / |R1|, r = |R1| / R0.
- * "Reconstructing Diffuse Lighting from Spherical Harmonic Data", CEDEC 2015; "ZH3: Quadratic Zonal Harmonics", 2024. */
+/* For comparison and compatibility, from L1: Geomerics' R0 (a + (1 - a) (p + 1) q^p), q = (1 + n.d) / 2, p = 1 + 2r, a = (1 - r)
+ * / (1 + r), and ZH3 hallucination: linear L2 with R2 = R0 (.0619677 r + .804984 r^2) (dd' - I/3), clamped at 0, where d = R1 /
+ * |R1|, r = |R1| / R0. "Reconstructing Diffuse Lighting from Spherical Harmonic Data", CEDEC 2015; "ZH3: Quadratic Zonal
+ * Harmonics", 2024. */
 SHI_INLINE float sh_irradiance_geomerics(const float *c, const float n[3]);
 SHI_INLINE float sh_irradiance_zh3(const float *c, const float n[3]);
 
@@ -166,9 +167,9 @@ SHI_INLINE void sh_closure_prepare(int order, int channels, const float *c, unsi
 SHI_INLINE float sh_closure_irradiance(int order, const sh_closure *closure, const float n[3]);
 
 #ifndef SH_NO_BATCH
-/* The same for many normals x[i], y[i], z[i]; out is planar, channel k of normal i is out[k * count + i]. Any number of channels and
- * normals, 0 too. A result does not depend on its position or on count, and is the scalar function's to rounding; the power in Geomerics'
- * model is within 1e-6 of itself. out may be an input array. */
+/* The same for many normals x[i], y[i], z[i]; out is planar, channel k of normal i is out[k * count + i]. Any number of channels
+ * and normals, 0 too. A result does not depend on its position or on count, and is the scalar function's to rounding; the power
+ * in Geomerics' model is within 1e-6 of itself. out may be an input array. */
 SHI_INLINE void sh_irradiance_closure_batch(int order, int channels, const float *c, const float *x, const float *y, const float *z,
                                             float *out, size_t count);
 SHI_INLINE void sh_closure_irradiance_batch(int order, int channels, const sh_closure *closure, const float *x, const float *y,
@@ -221,15 +222,16 @@ SHI_FUNCTION float sh_average_direction(const float *c, float dir[3]);
  * radiance, R0 - intensity / 4, not negative for a real light. c has `channels` sets of order >= 1. */
 SHI_FUNCTION void sh_dominant_light(int order, int channels, const float *c, float dir[3], float *intensity, float *ambient);
 
-/* The least and greatest value over the sphere of sh_radiance, and of sh_irradiance, and a unit direction where it is taken (`at` may
- * be NULL; one of them where there are many). Exact, not sampled: error <= 1e-6 of the largest coefficient. */
+/* The least and greatest value over the sphere of sh_radiance, and of sh_irradiance, and a unit direction where it is taken
+ * (`at` may be NULL; one of them where there are many). Exact, not sampled: error <= 2e-6 of the largest coefficient. */
 SHI_INLINE float sh_min(int order, const float *c, float at[3]);
 SHI_INLINE float sh_max(int order, const float *c, float at[3]);
 SHI_INLINE float sh_irradiance_min(int order, const float *c, float at[3]);
 SHI_INLINE float sh_irradiance_max(int order, const float *c, float at[3]);
 
-/* The radiance of the largest constant light that can be taken out of an L2 set and leave the moments of a non-negative light: the
- * smallest eigenvalue of [[R0, sqrt3 R1'], [sqrt3 R1, R0 I + 3 R2]]. Negative if the set itself has no such light. Error <= 1e-6 R0. */
+/* The radiance of the largest constant light that can be taken out of an L2 set and leave the moments of a non-negative light:
+ * the smallest eigenvalue of [[R0, sqrt3 R1'], [sqrt3 R1, R0 I + 3 R2]]. Negative if the set itself has no such light. Error <=
+ * 1e-6 R0. */
 SHI_FUNCTION float sh_ambient_floor(const float *c);
 
 /* Whether some light that is nowhere negative has these coefficients, to 1e-6 R0. Necessary and sufficient. */
@@ -241,32 +243,34 @@ typedef enum sh_window {
     SH_WINDOW_LAPLACIAN /* sh_zonal_laplacian */
 } sh_window;
 
-/* Removes ringing: out = c under the weakest window of a family, one for all channels, for which no channel's radiance is negative
- * anywhere (>= -1e-6 R0, by sh_min); 1e-4 weaker, one is. (Where even weaker ones would do again, since bands fade at different rates, it
- * finds one of the limits.) Returns its parameter: a width (INFINITY: nothing was to be done) or a lambda. R0 < 0 cannot be helped:
- * such channels have no say. At most 40 minima per channel and pass, one pass or two as a rule, nine at most. out may be c. */
+/* Removes ringing: out = c under the weakest window of a family, one for all channels, for which no channel's radiance is
+ * negative anywhere (>= -1e-6 R0, by sh_min); 1e-4 weaker, one is. (Where even weaker ones would do again, since bands fade at
+ * different rates, it finds one of the limits.) Returns its parameter: a width (INFINITY: nothing was to be done) or a lambda.
+ * R0 < 0 cannot be helped: such channels have no say. At most 40 minima per channel and pass, one pass or two as a rule, nine at
+ * most. out may be c. */
 SHI_INLINE float sh_dering(int order, int channels, const float *c, sh_window window, float *out);
 
-/* The lowest order at which the irradiance (or the radiance) of an L2 set, anywhere, differs from L2's by at most `tolerance`, which is
- * absolute. Dropping R2 costs at most 15/8 (15/2) times its largest |eigenvalue|, which is at most sqrt(2/3 R2:R2); R1, 2 |R1| (3 |R1|). */
+/* The lowest order at which the irradiance (or the radiance) of an L2 set, anywhere, differs from L2's by at most `tolerance`,
+ * which is absolute. Dropping R2 costs at most 15/8 (15/2) times its largest |eigenvalue|, which is at most sqrt(2/3 R2:R2); R1,
+ * 2 |R1| (3 |R1|). */
 SHI_FUNCTION int sh_order_needed(const float *c, float tolerance);
 SHI_FUNCTION int sh_radiance_order_needed(const float *c, float tolerance);
 
-/* Sorts `count` L2 probes (one after the other, `channels` planar sets each) by the order that all their channels need: index[first[o]]
- * to index[first[o + 1] - 1] are those of order o, in rising order. index has `count` elements. */
+/* Sorts `count` L2 probes (one after the other, `channels` planar sets each) by the order that all their channels need:
+ * index[first[o]] to index[first[o + 1] - 1] are those of order o, in rising order. index has `count` elements. */
 SHI_FUNCTION void sh_group_by_order(int channels, const float *c, size_t count, float tolerance, size_t *index, size_t first[4]);
 
 /* Whether the irradiance of every channel is that of channel 0, everywhere, to `tolerance`: then one evaluation serves them all. */
 SHI_INLINE int sh_is_grey(int order, int channels, const float *c, float tolerance);
 
-/* Whether to leave out a light of mean radiance `value` that comes from one direction, or is a convolution of such a light. It adds at
- * most 17/4 |value| to irradiance anywhere, which is taken from *budget: lights skipped together change irradiance by at most what
- * the budget was at first. */
+/* Whether to leave out a light of mean radiance `value` that comes from one direction, or is a convolution of such a light. It
+ * adds at most 17/4 |value| to irradiance anywhere, which is taken from *budget: lights skipped together change irradiance by at
+ * most what the budget was at first. */
 SHI_INLINE int sh_skip_light(float value, float *budget);
 
-/* The smallest height (power of two, half the width) of an equirectangular panorama, and width of a cube map's face, whose projection
- * to `order` yields irradiance within `tolerance` * R0 of that of any finer image that it is the average of, weighted by texel area.
- * For light that is nowhere negative. At most 2^24. */
+/* The smallest height (power of two, half the width) of an equirectangular panorama, and width of a cube map's face, whose
+ * projection to `order` yields irradiance within `tolerance` * R0 of that of any finer image that it is the average of, weighted
+ * by texel area. For light that is nowhere negative. At most 2^24. */
 SHI_FUNCTION int sh_equirect_size_for(int order, float tolerance);
 SHI_FUNCTION int sh_cubemap_size_for(int order, float tolerance);
 
@@ -611,11 +615,12 @@ SHI_FUNCTION void sh_dominant_light(int order, int channels, const float *c, flo
 }
 
 /* ---- Bounded irradiance and closures --------------------------------------------------------------------------------------------
- * In units of R0, u = R1 / R0 and A = R2 / R0. The even part of irradiance is 2 <|t|>, t = n.w, over a distribution of directions with
- * <t> = n.u and <t^2> = n'A n + 1/3. From t^2 <= |t| and Cauchy-Schwarz: max(|n.u|, <t^2>) <= <|t|> <= sqrt(<t^2>). Knowing u only,
- * <t^2> <= 1 - |u|^2 + (n.u)^2: the covariance has no negative eigenvalue, and its trace is 1 - |u|^2. */
+ * In units of R0, u = R1 / R0 and A = R2 / R0. The even part of irradiance is 2 <|t|>, t = n.w, over a distribution of
+ * directions with <t> = n.u and <t^2> = n'A n + 1/3. From t^2 <= |t| and Cauchy-Schwarz: max(|n.u|, <t^2>) <= <|t|> <=
+ * sqrt(<t^2>). Knowing u only, <t^2> <= 1 - |u|^2 + (n.u)^2: the covariance has no negative eigenvalue, and its trace is 1 -
+ * |u|^2. */
 
-enum { SHI_LINEAR, SHI_CLOSURE_L1, SHI_CLOSURE_L1_BOUNDED, SHI_CLOSURE_L2, SHI_GEOMERICS, SHI_ZH3 };
+enum { SHI_LINEAR, SHI_CLOSURE_L1, SHI_CLOSURE_L1_BOUNDED, SHI_CLOSURE_L2, SHI_CLOSURE_L2_BOUNDED, SHI_GEOMERICS, SHI_ZH3 };
 
 #define SHI_BLACK 1e-34f                 /* an R0 below it counts as 0; its inverse, times the largest gain below, is finite */
 #define SHI_ULPS (1.0f / 2097152.0f)     /* 2^-21: 8 ulp, an error of <t^2> due to the coefficients' rounding */
@@ -675,8 +680,8 @@ SHI_INLINE void shi_prepare_linear(int order, const float *c, sh_closure *out) {
 
 /* With t = (n.u)^2 and s = |u|^2, the even part over R0 is a cubic in t,
  * 1 + 5/8 (3t - s) - 3/64 (35 t^2 - 30 s t + 3 s^2) + 13/1024 (231 t^3 - 315 s t^2 + 105 s^2 t - 5 s^3).
- * For s <= 7/8 it lies between the bounds by itself, at least .004 above the lower and .05 below the upper: no clamp, no square root;
- * and in T = sigma^2 t it is 2 / sigma times a monic cubic. */
+ * For s <= 7/8 it lies between the bounds by itself, at least .004 above the lower and .05 below the upper: no clamp, no square
+ * root; and in T = sigma^2 t it is 2 / sigma times a monic cubic. */
 SHI_INLINE void shi_prepare_closure_l1(const float *c, sh_closure *out) {
     const double r0 = (double)c[SH_R0], inverse = 1.0 / r0;
     const double u[3] = { inverse * (double)c[SH_X], inverse * (double)c[SH_Y], inverse * (double)c[SH_Z] };
@@ -702,8 +707,8 @@ SHI_INLINE float shi_determinant(const float a[6]) {
     return a[0] * (a[3] * a[5] - a[4] * a[4]) - a[1] * (a[1] * a[5] - a[4] * a[2]) + a[2] * (a[1] * a[4] - a[3] * a[2]);
 }
 
-/* Whether [[g, sqrt3 u'], [sqrt3 u, g I + 3 A]] has no eigenvalue below about -g/512: Sylvester's criterion on what eliminating the first
- * row of the matrix so shifted leaves. */
+/* Whether [[g, sqrt3 u'], [sqrt3 u, g I + 3 A]] has no eigenvalue below about -g/512: Sylvester's criterion on what eliminating
+ * the first row of the matrix so shifted leaves. */
 SHI_INLINE int shi_is_real(float g, const float u[3], const float a[6]) {
     const float head = g * (1.0f + SHI_UNREAL), k = 3.0f / head;
     const float b[6] = { head + 3.0f * a[0] - k * u[0] * u[0], 3.0f * a[1] - k * u[0] * u[1], 3.0f * a[2] - k * u[0] * u[2],
@@ -712,8 +717,10 @@ SHI_INLINE int shi_is_real(float g, const float u[3], const float a[6]) {
 }
 
 /* The light but for a constant `floor` is w = R0 - floor strong. In units of w, A and u are its moments, and g = R0 / w is R0:
- * E = g + 15/8 q - 105/64 T4 + 3003/1024 T6, T4 = q^2 - 4/7 a + 2/35 f, T6 = q (q^2 - 12/11 a + 2/11 f) + 16/77 det A, where q = n'A n,
- * a = |A n|^2, f = A:A; the traceless parts of A (x) A and A (x) A (x) A stand for L4 and L6. Returns 0 if no light has these moments. */
+ * E = g + 15/8 q - 105/64 T4 + 3003/1024 T6,  T4 = q^2 - 4/7 a + 2/35 f,  T6 = q (q^2 - 12/11 a + 2/11 f) + 16/77 det A,
+ * where q = n'A n, a = |A n|^2, f = A:A; the traceless parts of A (x) A and A (x) A (x) A stand for L4 and L6. For f <= 1/8 it is
+ * below the upper bound by itself, by at least .04 (a scan of all eigenvalues and directions; g > 1 only widens the gap): no
+ * square root. Returns 0 if no light has these moments. */
 SHI_INLINE int shi_prepare_closure_l2(const float *c, float floor, sh_closure *out) {
     const float r0 = c[SH_R0], w = shi_larger(r0 - floor, r0 * (1.0f / 1024.0f)), g = r0 / w;
     const float u[3] = { c[SH_X] / w, c[SH_Y] / w, c[SH_Z] / w }, inverse = 1.0f / w;
@@ -724,7 +731,7 @@ SHI_INLINE int shi_prepare_closure_l2(const float *c, float floor, sh_closure *o
     if (!(r0 > SHI_BLACK && shi_is_real(g, u, a)))
         return 0;
     const float f = a[0] * a[0] + a[3] * a[3] + a[5] * a[5] + 2.0f * (a[1] * a[1] + a[2] * a[2] + a[4] * a[4]);
-    out->model = SHI_CLOSURE_L2;
+    out->model = f <= 0.125f ? SHI_CLOSURE_L2 : SHI_CLOSURE_L2_BOUNDED;
     out->scale = w;
     shi_set3(2.0f * u[0], 2.0f * u[1], 2.0f * u[2], out->r1);
     out->even[0] = g - 3.0f / 32.0f * f + 39.0f / 64.0f * shi_determinant(a);
@@ -805,12 +812,15 @@ SHI_INLINE float shi_evaluate_model(const sh_closure *p, const float n[3]) {
         even = ((3003.0f / 65536.0f * t + k[2]) * t + k[1]) * t + k[0];
         upper = k[3] + t;
         break;
-    case SHI_CLOSURE_L2: {
+    case SHI_CLOSURE_L2:
+    case SHI_CLOSURE_L2_BOUNDED: {
         shi_symmetric_times(p->r2, n, an);
         const float q = shi_dot3(an, n), a = shi_dot3(an, an);
         even = k[0] + q * (k[1] + q * (3003.0f / 1024.0f * q - 105.0f / 64.0f)) + a * (15.0f / 16.0f - 819.0f / 256.0f * q);
         const float m2 = 2.0f * q + k[3];
         lower = shi_larger(lower, m2);
+        if (p->model == SHI_CLOSURE_L2)
+            return p->scale * (shi_larger(even, lower) + v);
         upper = k[2] * m2;
         break;
     }
@@ -849,8 +859,8 @@ SHI_INLINE float sh_irradiance_zh3(const float *c, const float n[3]) {
 }
 
 /* ---- Extrema, realizability, de-ringing -----------------------------------------------------------------------------------------
- * In the frame of R2's eigenvectors every question is about one sum over three axes and one unknown. In double: the fourth powers of
- * any float are finite, and clustered eigenvalues cost half the digits at worst. */
+ * In the frame of R2's eigenvectors every question is about one sum over three axes and one unknown. In double: the fourth
+ * powers of any float are finite, and clustered eigenvalues cost half the digits at worst. */
 
 /* R1 and R2 in the frame of R2's eigenvectors, eigenvalues rising. */
 typedef struct shi_quadric {
@@ -867,7 +877,8 @@ SHI_INLINE void shi_cross(const double a[3], const double b[3], double out[3]) {
     out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-/* cos(acos(r) / 3) for r in [0, 1], the largest root of 4 x^3 - 3 x = r: a Newton step from a fit that is off by 1e-5; error < 2e-10. */
+/* cos(acos(r) / 3) for r in [0, 1], the largest root of 4 x^3 - 3 x = r: a Newton step from a fit that is off by 1e-5; error <
+ * 2e-10. */
 SHI_INLINE double shi_cos_third(double r) {
     const double x = 0.86603 + r * (0.16641 + r * (-0.04592 + r * (0.01751 - r * 0.00404)));
     return x - ((4.0 * x * x - 3.0) * x - r) / (12.0 * x * x - 3.0);
@@ -884,9 +895,9 @@ SHI_INLINE void shi_complete_frame(const double w[3], double u[3], double v[3]) 
     v[2] = -w[1];
 }
 
-/* The eigenvalue that is farthest from the others, and its unit eigenvector: of traceless a (rows m) with p^2 = a:a / 6 > 0, it is 2 p
- * cos(acos|r| / 3), with the sign of r = det(a / p) / 2. It is no closer than sqrt(3) p to another one, so that rows of a - value span a
- * plane, whose normal is the largest of their cross products. */
+/* The eigenvalue that is farthest from the others, and its unit eigenvector: of traceless a (rows m) with p^2 = a:a / 6 > 0, it
+ * is 2 p cos(acos|r| / 3), with the sign of r = det(a / p) / 2. It is no closer than sqrt(3) p to another one, so that rows of a
+ * - value span a plane, whose normal is the largest of their cross products. */
 SHI_FUNCTION double shi_isolated_axis(double m[3][3], double p2, double axis[3]) {
     const double p = sqrt(p2);
     double cross[3][3];
@@ -908,7 +919,8 @@ SHI_FUNCTION double shi_isolated_axis(double m[3][3], double p2, double axis[3])
     return value;
 }
 
-/* Turns the orthonormal u and v to the eigenvectors of the matrix within their plane, uu and vv becoming the eigenvalues, uu <= vv. */
+/* Turns the orthonormal u and v to the eigenvectors of the matrix within their plane, uu and vv becoming the eigenvalues, uu <=
+ * vv. */
 SHI_FUNCTION void shi_diagonalize2(double *uu, double uv, double *vv, double u[3], double v[3]) {
     const double half = 0.5 * (*vv - *uu), middle = 0.5 * (*vv + *uu), radius = sqrt(half * half + uv * uv);
     /* v's angle to the upper eigenvector is half that of (half, uv). */
@@ -968,10 +980,11 @@ SHI_INLINE void shi_quadric_init(int order, const float *c, double sign, shi_qua
         q->linear[i] = shi_dot3d(q->axis[i], r1);
 }
 
-/* The minimum over unit x of mean + sum of w1 linear x + w2 value x^2, w1, w2 >= 0: with half = w1 linear / 2 and gap = w2 (value - value[0]),
- * x = -half / (gap + t) where |x| = 1, a trust-region subproblem (More and Sorensen, 1983). 1 / |x| is concave and rises with t, so
- * Newton's method on it climbs from any t that is too small, as are those at which one term alone has length 1. If half[0] = 0 and
- * |x| < 1 at t = 0 (the "hard case"), what is missing is along axis 0. The value is that of the Lagrangian, stationary in t. */
+/* The minimum over unit x of mean + sum of w1 linear x + w2 value x^2, w1, w2 >= 0: with half = w1 linear / 2 and gap = w2
+ * (value - value[0]), x = -half / (gap + t) where |x| = 1, a trust-region subproblem (More and Sorensen, 1983). 1 / |x| is
+ * concave and rises with t, so Newton's method on it climbs from any t that is too small, as are those at which one term alone
+ * has length 1. If half[0] = 0 and |x| < 1 at t = 0 (the "hard case"), what is missing is along axis 0. The value is that of the
+ * Lagrangian, stationary in t. */
 SHI_FUNCTION double shi_quadric_min(const shi_quadric *q, double w1, double w2, double x[3]) {
     double half[3], gap[3], t = 0.0, norm2 = 0.0, value;
     for (int i = 0; i < 3; i++) {
@@ -1044,11 +1057,11 @@ SHI_INLINE double shi_secular(double base, const double b[3], const double g[3],
     return base - x + *sum1;
 }
 
-/* The smallest eigenvalue of the moment matrix is R0 + 3 value[0] - x, where x >= 0 is the root of shi_secular (or 0) for base = 3 value[0],
- * b = 3 linear^2, g = 3 (value - value[0]). The sum is at least total / (x + mean g), and at most total / x: a root for either is a
- * start on its side. Tangents pass below, so that Newton's method leads from either side to the left of the root and climbs. In
- * 1 / x the sum is concave: a tangent there, solved for its zero, descends from the right, and gives Newton's method a fresh start
- * where a pole with a small b makes it slow. Ends when the root is no more than `enough` beyond `left`. */
+/* The smallest eigenvalue of the moment matrix is R0 + 3 value[0] - x, where x >= 0 is the root of shi_secular (or 0) for base =
+ * 3 value[0], b = 3 linear^2, g = 3 (value - value[0]). The sum is at least total / (x + mean g), and at most total / x: a root
+ * for either is a start on its side. Tangents pass below, so that Newton's method leads from either side to the left of the root
+ * and climbs. In 1 / x the sum is concave: a tangent there, solved for its zero, descends from the right, and gives Newton's
+ * method a fresh start where a pole with a small b makes it slow. Ends when the root is no more than `enough` beyond `left`. */
 SHI_FUNCTION float sh_ambient_floor(const float *c) {
     shi_quadric q;
     double g[3], b[3], low1, low2, sum1, sum2;
@@ -1143,7 +1156,8 @@ SHI_INLINE float sh_dering(int order, int channels, const float *c, sh_window wi
     return parameter;
 }
 
-/* Bounds of |R1| and of the largest |eigenvalue| of R2, of the difference of two sets (b may be NULL). In double no square overflows. */
+/* Bounds of |R1| and of the largest |eigenvalue| of R2, of the difference of two sets (b may be NULL). In double no square
+ * overflows. */
 SHI_INLINE void shi_band_bounds(int order, const float *a, const float *b, double bound[3]) {
     double d[SH_COUNT(SH_L2)] = { 0 };
     for (int i = 0; i < SH_COUNT(order); i++)
@@ -1211,9 +1225,9 @@ SHI_INLINE int sh_skip_light(float value, float *budget) {
 }
 
 /* Averaging a texel's light changes irradiance at n by the integral over the texel of the light times K - (mean of K), K the
- * reconstruction's kernel 1 + 2t + 15/8 (t^2 - 1/3), t = n.w: at most the light's share of R0 times K's steepest slope over the angle (L1: 2;
- * L2: 3.402, at t = .588) times the mean distance from a corner to the rest of the texel, .766 of the side of a square. .8 covers
- * the texels that are wider at one end. The widest sides are pi / height and 2 / width. */
+ * reconstruction's kernel 1 + 2t + 15/8 (t^2 - 1/3), t = n.w: at most the light's share of R0 times K's steepest slope over the
+ * angle (L1: 2; L2: 3.402, at t = .588) times the mean distance from a corner to the rest of the texel, .766 of the side of a
+ * square. .8 covers the texels that are wider at one end. The widest sides are pi / height and 2 / width. */
 SHI_INLINE int shi_size_for(int order, double side, float tolerance) {
     const double slope = order == SH_L0 ? 0.0 : order == SH_L1 ? 2.0 : 3.402, needed = 0.8 * slope * side;
     int size = 1;
@@ -3244,8 +3258,8 @@ SHI_INLINE shi_i shi_as_int(shi_v a) {
     return shi_iload32(lanes);
 }
 
-/* log2 of normal a > 0, error < 3e-7 for a in [1/2, 1], else 1 ulp: a = 2^e m, m in [1, 2), and log2 m = 1/2 + 2 atanh(s) / ln 2 for
- * s = (m - sqrt 2) / (m + sqrt 2), |s| < .172, by its series up to s^7. */
+/* log2 of normal a > 0, error < 3e-7 for a in [1/2, 1], else 1 ulp: a = 2^e m, m in [1, 2), and log2 m = 1/2 + 2 atanh(s) / ln 2
+ * for s = (m - sqrt 2) / (m + sqrt 2), |s| < .172, by its series up to s^7. */
 SHI_INLINE shi_v shi_log2(shi_v a) {
     const shi_i bits = shi_as_int(a);
     const shi_v e = shi_to_float(shi_iadd(shi_shr(bits, 23), -127)), m = shi_as_float(shi_iadd(shi_iand(bits, 0x7fffff), 0x3f800000));
@@ -3258,8 +3272,8 @@ SHI_INLINE shi_v shi_log2(shi_v a) {
     return shi_add(e, shi_madd(s, sum, shi_splat(0.5f)));
 }
 
-/* 2^a for a in [-126, 126], relative error < 3e-7: 2^n times the exponential series up to the sixth power, n the nearest integer, which
- * the addition of 1.5 * 2^23 leaves in the low bits. */
+/* 2^a for a in [-126, 126], relative error < 3e-7: 2^n times the exponential series up to the sixth power, n the nearest
+ * integer, which the addition of 1.5 * 2^23 leaves in the low bits. */
 SHI_INLINE shi_v shi_exp2(shi_v a) {
     const shi_i n = shi_iadd(shi_as_int(shi_add(a, shi_splat(12582912.0f))), -0x4b400000);
     const shi_v f = shi_mul(shi_splat(0.693147181f), shi_sub(a, shi_to_float(n))); /* ln 2 */
@@ -3324,7 +3338,10 @@ SHI_INLINE shi_v shi_model_v(int model, const shi_model *m, shi_v x, shi_v y, sh
     const shi_v aa = shi_dot_v(ax, ay, az, ax, ay, az), m2 = shi_madd(shi_splat(2.0f), q, k[3]);
     const shi_v outer = shi_madd(shi_splat(-819.0f / 256.0f), q, shi_splat(15.0f / 16.0f));
     const shi_v inner = shi_madd(shi_madd(shi_splat(3003.0f / 1024.0f), q, shi_splat(-105.0f / 64.0f)), q, k[1]);
-    return shi_clamped_v(m, v, shi_madd(aa, outer, shi_madd(q, inner, k[0])), m2, shi_mul(k[2], m2));
+    const shi_v even = shi_madd(aa, outer, shi_madd(q, inner, k[0]));
+    if (model == SHI_CLOSURE_L2)
+        return shi_mul(m->scale, shi_add(shi_max(even, shi_max(shi_abs(v), m2)), v));
+    return shi_clamped_v(m, v, even, m2, shi_mul(k[2], m2));
 }
 
 SHI_INLINE void shi_model_loop(int model, const sh_closure *p, const float *x, const float *y, const float *z, float *out,
@@ -3341,6 +3358,7 @@ SHI_FUNCTION void shi_model_run(const sh_closure *p, const float *x, const float
     case SHI_CLOSURE_L1: shi_model_loop(SHI_CLOSURE_L1, p, x, y, z, out, count); break;
     case SHI_CLOSURE_L1_BOUNDED: shi_model_loop(SHI_CLOSURE_L1_BOUNDED, p, x, y, z, out, count); break;
     case SHI_CLOSURE_L2: shi_model_loop(SHI_CLOSURE_L2, p, x, y, z, out, count); break;
+    case SHI_CLOSURE_L2_BOUNDED: shi_model_loop(SHI_CLOSURE_L2_BOUNDED, p, x, y, z, out, count); break;
     case SHI_GEOMERICS: shi_model_loop(SHI_GEOMERICS, p, x, y, z, out, count); break;
     case SHI_ZH3: shi_model_loop(SHI_ZH3, p, x, y, z, out, count); break;
     default: shi_model_loop(SHI_LINEAR, p, x, y, z, out, count); break;
