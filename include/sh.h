@@ -1835,6 +1835,17 @@ SHI_INLINE void shi_store4(unsigned char *p, size_t stride, int n, const shi_v v
 #endif
 
 
+/* Asks for the cache line at p, which need not be readable. */
+SHI_INLINE void shi_prefetch(const void *p) {
+#if SH_SIMD == SH_SIMD_AVX512 || SH_SIMD == SH_SIMD_AVX2 || SH_SIMD == SH_SIMD_SSE2
+    _mm_prefetch((const char *)p, _MM_HINT_T0);
+#elif defined(__GNUC__)
+    __builtin_prefetch(p);
+#else
+    (void)p;
+#endif
+}
+
 /* Four bytes a lane as a word whose low byte is the first. */
 SHI_INLINE shi_i shi_iload_bytes(const unsigned char *p) {
 #if SHI_LANES == 1
@@ -2474,10 +2485,13 @@ SHI_FUNCTION const unsigned char *shi_decode_block(shi_reader *reader, const uns
     return (const unsigned char *)scratch->decoded;
 }
 
+SHI_INLINE const unsigned char *shi_texel(const shi_reader *reader, int row, int x) {
+    return (const unsigned char *)reader->image->pixels + (size_t)row * reader->stride + (size_t)x * reader->layout.pixel_size;
+}
+
 /* Pixels x to x + count of a row as floats, padded with black to `padded` pixels, a multiple of SHI_LANES, both <= SHI_BLOCK. */
 SHI_INLINE const unsigned char *shi_read_block(shi_reader *reader, int row, int x, int count, int padded, shi_scratch *scratch) {
-    const unsigned char *in = (const unsigned char *)reader->image->pixels + (size_t)row * reader->stride +
-                              (size_t)x * reader->layout.pixel_size;
+    const unsigned char *in = shi_texel(reader, row, x);
     if (reader->image->format == SH_F32 && !reader->careful && count == padded)
         return in;
     return shi_decode_block(reader, in, count, padded, scratch);
@@ -3024,28 +3038,35 @@ SHI_INLINE double shi_factors_init(int order, int kind, int size, int y, int x, 
     return share;
 }
 
-SHI_INLINE void shi_plane_add(int order, shi_v texels, const float *table, shi_v s[SHI_SUMS]) {
-    s[SHI_W] = shi_madd(texels, shi_load(table + SHI_W * SHI_LANES), s[SHI_W]);
-    if (order >= SH_L1) {
-        s[SHI_WR] = shi_madd(texels, shi_load(table + SHI_WR * SHI_LANES), s[SHI_WR]);
-        s[SHI_WRU] = shi_madd(texels, shi_load(table + SHI_WRU * SHI_LANES), s[SHI_WRU]);
-    }
-    if (order >= SH_L2) {
-        s[SHI_WRR] = shi_madd(texels, shi_load(table + SHI_WRR * SHI_LANES), s[SHI_WRR]);
-        s[SHI_WRRU] = shi_madd(texels, shi_load(table + SHI_WRRU * SHI_LANES), s[SHI_WRRU]);
-    }
+/* sums[i] += texels * factor for two rows. */
+SHI_INLINE void shi_plane_add(const float *factor, shi_v texels_a, shi_v texels_b, shi_v *sum_a, shi_v *sum_b) {
+    const shi_v f = shi_load(factor);
+    *sum_a = shi_madd(texels_a, f, *sum_a);
+    *sum_b = shi_madd(texels_b, f, *sum_b);
 }
 
-/* Adds a block of two rows that share their factors. */
-SHI_INLINE void shi_plane_block(int order, const unsigned char *row_a, const unsigned char *row_b, int count, int phases,
+/* Adds a block of two rows that share their factors, and asks for the rows that come next: the caller goes from face to face, which
+ * no hardware prefetcher follows. */
+SHI_INLINE void shi_plane_block(int order, const unsigned char *row_a, const unsigned char *row_b, const unsigned char *next_a,
+                                const unsigned char *next_b, int count, int phases,
                                 const shi_factors *factors, shi_v total_a[SHI_PHASES][SHI_SUMS], shi_v total_b[SHI_PHASES][SHI_SUMS]) {
     for (int phase = 0; phase < phases; phase++) {
         shi_v *ta = total_a[phase], *tb = total_b[phase];
         shi_v a[SHI_SUMS] = { ta[0], ta[1], ta[2], ta[3], ta[4] }, b[SHI_SUMS] = { tb[0], tb[1], tb[2], tb[3], tb[4] };
         for (int i = phase * SHI_LANES; i < count; i += phases * SHI_LANES) {
             const float *table = factors->table + i * SHI_SUMS;
-            shi_plane_add(order, shi_load(row_a + (size_t)i * sizeof(float)), table, a);
-            shi_plane_add(order, shi_load(row_b + (size_t)i * sizeof(float)), table, b);
+            const shi_v texels_a = shi_load(row_a + (size_t)i * sizeof(float)), texels_b = shi_load(row_b + (size_t)i * sizeof(float));
+            shi_plane_add(table + SHI_W * SHI_LANES, texels_a, texels_b, &a[SHI_W], &b[SHI_W]);
+            if (order >= SH_L1) {
+                shi_plane_add(table + SHI_WR * SHI_LANES, texels_a, texels_b, &a[SHI_WR], &b[SHI_WR]);
+                shi_plane_add(table + SHI_WRU * SHI_LANES, texels_a, texels_b, &a[SHI_WRU], &b[SHI_WRU]);
+            }
+            if (order >= SH_L2) {
+                shi_plane_add(table + SHI_WRR * SHI_LANES, texels_a, texels_b, &a[SHI_WRR], &b[SHI_WRR]);
+                shi_plane_add(table + SHI_WRRU * SHI_LANES, texels_a, texels_b, &a[SHI_WRRU], &b[SHI_WRRU]);
+            }
+            shi_prefetch(next_a + (size_t)i * sizeof(float));
+            shi_prefetch(next_b + (size_t)i * sizeof(float));
         }
         for (int i = 0; i < SHI_SUMS; i++) {
             ta[i] = a[i];
@@ -3078,6 +3099,11 @@ typedef struct shi_part {
 
 enum { SHI_PARTS = 12 }; /* six faces of a cube, two rows each */
 
+SHI_INLINE const unsigned char *shi_part_texel(shi_reader *reader, const shi_part *part, int i, int x) {
+    shi_reader_use(reader, part[i].image);
+    return shi_texel(reader, part[i].row, x);
+}
+
 /* Sums columns [begin, end) of parts that share the factors of row y, and spreads the sums into the group. Returns the share of the
  * sphere of one part. */
 SHI_INLINE double shi_plane_parts(int order, int kind, shi_reader *reader, int y, int begin, int end, const shi_part *part, int parts,
@@ -3105,8 +3131,10 @@ SHI_INLINE double shi_plane_parts(int order, int kind, shi_reader *reader, int y
             }
             if (reader->look_for_negative)
                 group->signs = shi_or(group->signs, shi_or(shi_signs(a, padded * interleave), shi_signs(b, padded * interleave)));
+            const unsigned char *next_a = shi_part_texel(reader, part, i + 2 < parts ? i + 2 : 0, i + 2 < parts ? x : x + count);
+            const unsigned char *next_b = shi_part_texel(reader, part, i + 3 < parts ? i + 3 : pair, i + 3 < parts ? x : x + count);
             for (int plane = 0; plane < planes; plane++)
-                shi_plane_block(order, a + (size_t)plane * SHI_BLOCK * sizeof(float), b + (size_t)plane * SHI_BLOCK * sizeof(float),
+                shi_plane_block(order, a + (size_t)plane * SHI_BLOCK * sizeof(float), b + (size_t)plane * SHI_BLOCK * sizeof(float), next_a, next_b,
                                 padded * interleave, phases, &factors, total[i] + plane, total[i + 1] + plane);
         }
     }

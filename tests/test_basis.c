@@ -6,7 +6,7 @@
 static const char *const names[9] = { "1", "x", "y", "z", "xx", "xy", "xz", "yy", "yz" };
 
 /* The sum of the three roundings of x * x - 1/3 is at most half an ulp of 1 (2^-23) and a little: 7e-8. */
-static const double basis_tolerance = 8e-8;
+static const long double basis_tolerance = 8e-8L;
 
 static void values(void) {
     test_section("basis values");

@@ -62,11 +62,16 @@ static void write_accum_total(int order, const inputs *in, float *out) {
 }
 
 static void write_project_samples(int order, const inputs *in, float *out) {
-    const float x[3] = { 1.0f, 0.0f, 0.6f }, y[3] = { 0.0f, 0.8f, 0.0f }, z[3] = { 0.0f, 0.6f, -0.8f };
-    float value[3];
-    for (int i = 0; i < 3; i++)
-        value[i] = in->dir[i];
-    CHECK(sh_project_samples(order, 1, x, y, z, value, NULL, 3, out) == SH_OK);
+    enum { COUNT = 37 };
+    float x[COUNT], y[COUNT], z[COUNT], value[COUNT];
+    for (int i = 0; i < COUNT; i++) {
+        const float t = (float)(i * i % 19) / 19.0f;
+        x[i] = t * in->dir[0];
+        y[i] = (1.0f - t) * in->dir[1];
+        z[i] = in->dir[2];
+        value[i] = in->value + t;
+    }
+    CHECK(sh_project_samples(order, 1, x, y, z, value, NULL, COUNT, out) == SH_OK);
 }
 
 /* The image is 5 x 2 so that no folding of columns has an even count to work on. */

@@ -4,7 +4,7 @@
 #include "test.h"
 
 /* Weights and coefficients are rounded to float, 2^-24 each, and the directions that f is called with too. */
-static const double exact_tolerance = 1e-7;
+static const long double exact_tolerance = 1e-7L;
 
 enum { MONOMIALS = 35 }; /* of degree 0 to 4 */
 
@@ -158,7 +158,7 @@ static void constants(void) {
             EQUAL(sh_project_function(order, 1, call_light, &back, degree, c), SH_OK);
             NEAR(c[0], value, 2.4e-7); /* an ulp */
             for (int i = 1; i < SH_COUNT(order); i++)
-                NEAR(c[i], 0.0, 3.7 * exact_tolerance);
+                NEAR(c[i], 0.0, 3.7L * exact_tolerance);
             const int total = degree + order;
             CHECK(back.calls >= total * total / 2 && back.calls <= (total + 2) * (total + 1) / 2 + total + 1);
         }
@@ -179,7 +179,7 @@ static void lights(void) {
         const zonal_light light = random_axis(clamped_cosine, 0.0L);
         test_section("clamped cosine");
         project(along_axis, &light, 200, c);
-        expect_zonal(c, light.axis, 1.0L, 2.0L / 3.0L, 0.25L, 8e-6);
+        expect_zonal(c, light.axis, 1.0L, 2.0L / 3.0L, 0.25L, 8e-6L);
     }
     for (int i = -9; i <= 9; i++) {
         const long double cosine = 0.1L * i;
@@ -187,7 +187,7 @@ static void lights(void) {
         test_section("a cap of cosine %g", (double)cosine);
         project(along_axis, &light, 300, c);
         expect_zonal(c, light.axis, (1.0L - cosine) / 2.0L, (1.0L - cosine * cosine) / 4.0L, (cosine - powl(cosine, 3.0L)) / 4.0L,
-                     5e-4);
+                     5e-4L);
     }
 }
 
@@ -228,11 +228,11 @@ static void rotations(void) {
         EQUAL(sh_project_function(SH_L2, 1, call_light, &back, 4, turned), SH_OK);
         oracle_widen(c, 9, wide);
         oracle_rotate(wide, q, expected);
-        NEAR_ALL(turned, expected, 9, 3.0 * exact_tolerance); /* |light| is below 3 */
+        NEAR_ALL(turned, expected, 9, 3.0L * exact_tolerance); /* |light| is below 3 */
         oracle_rule rule = oracle_rule_sphere(6);
         oracle_moments(&rule, fourth_degree, weight, expected);
         oracle_rule_free(&rule);
-        NEAR_ALL(c, expected, 9, 3.0 * exact_tolerance);
+        NEAR_ALL(c, expected, 9, 3.0L * exact_tolerance);
     }
 }
 

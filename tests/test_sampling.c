@@ -109,46 +109,46 @@ static void strata(void) {
 /* The jitter within cells is uniform, and independent between its two coordinates: means and products of 20000 numbers, within 4 of
  * their standard deviations, sqrt(1/12) and 1/12 over sqrt(20000). */
 static void jitter(void) {
-    enum { COUNT = 20000 };
+    const int count = 20000;
     double mean[2] = { 0.0, 0.0 }, product = 0.0, squares[2] = { 0.0, 0.0 };
     test_section("jitter");
-    for (uint32_t i = 0; i < COUNT; i++) {
+    for (uint32_t i = 0; i < (uint32_t)count; i++) {
         float dir[3];
         double uv[2];
         sh_direction_stratified(i, 1, 1, i / 100, dir); /* one cell: each direction is anywhere */
         square(dir, uv);
         for (int k = 0; k < 2; k++) {
-            mean[k] += (uv[k] - 0.5) / COUNT;
-            squares[k] += (uv[k] - 0.5) * (uv[k] - 0.5) / COUNT;
+            mean[k] += (uv[k] - 0.5) / count;
+            squares[k] += (uv[k] - 0.5) * (uv[k] - 0.5) / count;
         }
-        product += (uv[0] - 0.5) * (uv[1] - 0.5) / COUNT;
+        product += (uv[0] - 0.5) * (uv[1] - 0.5) / count;
     }
     for (int k = 0; k < 2; k++) {
-        NEAR(mean[k], 0.0, 4.0 * sqrt(1.0 / 12.0 / COUNT));
-        NEAR(squares[k], 1.0 / 12.0, 4.0 * sqrt(1.0 / 180.0 / COUNT)); /* variance of (u - 1/2)^2 is 1/80 - 1/144 */
+        NEAR(mean[k], 0.0, 4.0 * sqrt(1.0 / 12.0 / count));
+        NEAR(squares[k], 1.0 / 12.0, 4.0 * sqrt(1.0 / 180.0 / count)); /* variance of (u - 1/2)^2 is 1/80 - 1/144 */
     }
-    NEAR(product, 0.0, 4.0 / 12.0 / sqrt((double)COUNT));
+    NEAR(product, 0.0, 4.0 / 12.0 / sqrt((double)count));
 }
 
 /* Pearson's statistic of 8 x 8 cells of equal area: 63 degrees of freedom, standard deviation sqrt(126) for random directions, and
  * far less for the others. */
 static void uniform(void) {
     for (int s = 0; s < SAMPLERS; s++) {
-        enum { SIDE = 8, COUNT = 16384 };
+        enum { SIDE = 8 };
+        const uint32_t count = 16384;
+        const double side = SIDE, expected = count / (side * side);
         int cells[SIDE * SIDE] = { 0 };
         double statistic = 0.0;
         test_section("%s: uniform", samplers[s].name);
-        for (uint32_t i = 0; i < COUNT; i++) {
+        for (uint32_t i = 0; i < count; i++) {
             float dir[3];
             double uv[2];
-            samplers[s].sample(i, COUNT, 11, dir);
+            samplers[s].sample(i, count, 11, dir);
             square(dir, uv);
-            cells[(int)(uv[1] * SIDE * 0.9999999) * SIDE + (int)(uv[0] * SIDE)]++;
+            cells[(int)(uv[1] * side * 0.9999999) * SIDE + (int)(uv[0] * side)]++;
         }
-        for (int i = 0; i < SIDE * SIDE; i++) {
-            const double expected = COUNT / (double)(SIDE * SIDE);
+        for (int i = 0; i < SIDE * SIDE; i++)
             statistic += (cells[i] - expected) * (cells[i] - expected) / expected;
-        }
         CHECK(statistic < (s == 0 ? 63.0 + 4.0 * sqrt(126.0) : 1.0));
     }
 }

@@ -7,8 +7,8 @@
 /* An image of one texel is a constant: its R0 is the texel's value. */
 static void check_texel(const void *bytes, int channels, sh_format format) {
     const sh_image image = { bytes, 1, 1, 0, channels, format };
-    long double value[3];
-    float c[3];
+    long double value[3] = { 0.0L };
+    float c[3] = { 0.0f };
     oracle_texel(&image, 0, 0, value);
     EQUAL(sh_project_equirect(SH_L0, &image, 0, c, NULL), SH_OK);
     for (int k = 0; k < oracle_colours(&image); k++)

@@ -4,7 +4,7 @@
 #include "test.h"
 
 /* Relative: four roundings of half an ulp, 2^-24. */
-static const double kernel_tolerance = 2.4e-7;
+static const long double kernel_tolerance = 2.4e-7L;
 
 static long double lambert(long double t, const void *user) {
     (void)user;
