@@ -50,15 +50,29 @@ static inline double closure_error(bench_case *test, int of_baseline) {
     return error;
 }
 
-/* Instructions of the arithmetic units, each as long as a multiply-add: the L1 closure has 3 + 1 + 3 + 2, L2's 24 multiply-adds or
- * products and five others, or two and no square root where the upper bound is out of reach, as here. */
-static inline void closure_add(bench_list *list, const char *name, int kind, int order, size_t operations) {
+/* One sun and little else: the upper bound is within reach, and with it the square root. */
+static inline void closure_prepare_bounded(bench_case *test) {
+    const float sun[3] = { 0.48f, 0.36f, 0.8f };
+    eval_prepare_soa(test);
+    eval_data *d = (eval_data *)test->data;
+    for (int k = 0; k < 3; k++) {
+        float *c = d->c + k * SH_COUNT(test->order);
+        for (int i = 0; i < SH_COUNT(test->order); i++)
+            c[i] = 0.0f;
+        c[SH_R0] = 0.02f + 0.01f * (float)k;
+        sh_add_sample(test->order, sun, 1.0f, c);
+    }
+}
+
+/* Operations: instructions of the arithmetic units, each as long as a multiply-add. L1: 3 + 1 + 3 + 2; bounded, 4 more. L2: 25
+ * multiply-adds or products, 2 comparisons, an addition; bounded, 3 more. A square root comes on top, in a unit of its own. */
+static inline void closure_add(bench_list *list, const char *name, int kind, int order, int bounded, size_t operations) {
     bench_case *test = bench_add(list);
-    snprintf(test->name, sizeof test->name, "eval/%s/L%d/rgb/soa/1024", name, order);
+    snprintf(test->name, sizeof test->name, "eval/%s/L%d%s/rgb/soa/1024", name, order, bounded ? "/bounded" : "");
     test->items = 1024;
     test->order = order;
     test->kind = kind;
-    test->prepare = eval_prepare_soa;
+    test->prepare = bounded ? closure_prepare_bounded : eval_prepare_soa;
     test->run = closure_run;
     test->baseline = "linear";
     test->run_baseline = closure_linear;
@@ -351,10 +365,12 @@ static inline void skip_add(bench_list *list, const char *name, const char *base
 }
 
 static inline void bench_closure_cases(bench_list *list) {
-    closure_add(list, "closure", CLOSURE_CLOSURE, SH_L1, 9);
-    closure_add(list, "closure", CLOSURE_CLOSURE, SH_L2, 29);
-    closure_add(list, "geomerics", CLOSURE_GEOMERICS, SH_L1, 25);
-    closure_add(list, "zh3", CLOSURE_ZH3, SH_L1, 7);
+    closure_add(list, "closure", CLOSURE_CLOSURE, SH_L1, 0, 9);
+    closure_add(list, "closure", CLOSURE_CLOSURE, SH_L1, 1, 13);
+    closure_add(list, "closure", CLOSURE_CLOSURE, SH_L2, 0, 28);
+    closure_add(list, "closure", CLOSURE_CLOSURE, SH_L2, 1, 31);
+    closure_add(list, "geomerics", CLOSURE_GEOMERICS, SH_L1, 0, 25);
+    closure_add(list, "zh3", CLOSURE_ZH3, SH_L1, 0, 7);
     analysis_add(list, "closure/prepare/L1/rgb", ANALYSIS_PREPARE, SH_L1);
     analysis_add(list, "closure/prepare/L2/rgb", ANALYSIS_PREPARE, SH_L2);
     analysis_add(list, "closure/prepare/L2/rgb/floor", ANALYSIS_PREPARE_FLOOR, SH_L2);

@@ -716,13 +716,13 @@ SHI_INLINE int shi_is_real(float g, const float u[3], const float a[6]) {
     return b[0] > 0.0f && b[0] * b[3] - b[1] * b[1] > 0.0f && shi_determinant(b) > 0.0f;
 }
 
-/* The light but for a constant `floor` is w = R0 - floor strong. In units of w, A and u are its moments, and g = R0 / w is R0:
+/* The light but for a constant `ambient` is w = R0 - ambient strong. In units of w, A and u are its moments, and g = R0 / w is R0:
  * E = g + 15/8 q - 105/64 T4 + 3003/1024 T6,  T4 = q^2 - 4/7 a + 2/35 f,  T6 = q (q^2 - 12/11 a + 2/11 f) + 16/77 det A,
  * where q = n'A n, a = |A n|^2, f = A:A; the traceless parts of A (x) A and A (x) A (x) A stand for L4 and L6. For f <= 1/8 it is
  * below the upper bound by itself, by at least .04 (a scan of all eigenvalues and directions; g > 1 only widens the gap): no
  * square root. Returns 0 if no light has these moments. */
-SHI_INLINE int shi_prepare_closure_l2(const float *c, float floor, sh_closure *out) {
-    const float r0 = c[SH_R0], w = shi_larger(r0 - floor, r0 * (1.0f / 1024.0f)), g = r0 / w;
+SHI_INLINE int shi_prepare_closure_l2(const float *c, float ambient, sh_closure *out) {
+    const float r0 = c[SH_R0], w = shi_larger(r0 - ambient, r0 * (1.0f / 1024.0f)), g = r0 / w;
     const float u[3] = { c[SH_X] / w, c[SH_Y] / w, c[SH_Z] / w }, inverse = 1.0f / w;
     float *a = out->r2;
     for (int i = 0; i < 5; i++)
@@ -925,8 +925,8 @@ SHI_FUNCTION void shi_diagonalize2(double *uu, double uv, double *vv, double u[3
     const double half = 0.5 * (*vv - *uu), middle = 0.5 * (*vv + *uu), radius = sqrt(half * half + uv * uv);
     /* v's angle to the upper eigenvector is half that of (half, uv). */
     const double c2 = radius > 0.0 ? half / radius : 1.0, s2 = radius > 0.0 ? uv / radius : 0.0;
-    const double large = sqrt(0.5 * (1.0 + fabs(c2))), small = 0.5 * s2 / large;
-    const double c = c2 < 0.0 ? fabs(small) : large, s = c2 < 0.0 ? (s2 < 0.0 ? -large : large) : small;
+    const double greater = sqrt(0.5 * (1.0 + fabs(c2))), lesser = 0.5 * s2 / greater;
+    const double c = c2 < 0.0 ? fabs(lesser) : greater, s = c2 < 0.0 ? (s2 < 0.0 ? -greater : greater) : lesser;
     for (int i = 0; i < 3; i++) {
         const double ui = u[i], vi = v[i];
         u[i] = c * ui - s * vi;
