@@ -10,7 +10,9 @@
 #include <sys/stat.h>
 #endif
 
+#include "bench_closure.h"
 #include "bench_eval.h"
+#include "bench_models.h"
 #include "bench_operators.h"
 #include "bench_project.h"
 #include "bench_sample.h"
@@ -18,6 +20,7 @@
 #include "bench_svg.h"
 
 static const char usage[] = "usage: sh_bench [--list] [--filter TEXT] [--quick] [--json FILE] [--svg FILE] [--help]\n"
+                            "       sh_bench --models FILE [--env FILE...]\n"
                             "\n"
                             "Measures sh.h: each case in turns with its baseline and with its physical limit.\n"
                             "\n"
@@ -26,12 +29,16 @@ static const char usage[] = "usage: sh_bench [--list] [--filter TEXT] [--quick] 
                             "  --quick        seconds instead of minutes, less repeatable\n"
                             "  --json FILE    write the results as JSON\n"
                             "  --svg FILE     plot run time against error\n"
+                            "  --models FILE  measure the models of irradiance instead, and plot run time against model error\n"
+                            "  --env FILE...  panoramas (PFM, multiples of 128x64) to add to the lights of that plot\n"
                             "\n"
                             "Exit status: 0; 1 if an error is larger than its bound; 2 if something cannot be done.\n";
 
 typedef struct bench_options {
     int list, quick, help;
-    const char *filter, *json, *svg;
+    const char *filter, *json, *svg, *models;
+    const char *const *env; /* of argv */
+    int env_count;
 } bench_options;
 
 /* One line on stderr; the status to exit with. */
@@ -49,12 +56,17 @@ static int parse(int argc, char **argv, bench_options *options) {
         const char **value = strcmp(option, "--filter") == 0 ? &options->filter
                              : strcmp(option, "--json") == 0 ? &options->json
                              : strcmp(option, "--svg") == 0  ? &options->svg
+                             : strcmp(option, "--models") == 0 ? &options->models
                                                              : NULL;
         if (value && i + 1 == argc)
             return complain("nothing follows", option);
         if (value)
             *value = argv[++i];
-        else if (strcmp(option, "--list") == 0)
+        else if (strcmp(option, "--env") == 0) {
+            options->env = (const char *const *)(argv + i + 1);
+            for (; i + 1 < argc && strncmp(argv[i + 1], "--", 2) != 0; i++)
+                options->env_count++;
+        } else if (strcmp(option, "--list") == 0)
             options->list = 1;
         else if (strcmp(option, "--quick") == 0)
             options->quick = 1;
@@ -69,6 +81,7 @@ static int parse(int argc, char **argv, bench_options *options) {
 static bench_list matching_cases(const char *filter) {
     bench_list all = { NULL, 0, 0 };
     bench_eval_cases(&all);
+    bench_closure_cases(&all);
     bench_sample_cases(&all);
     bench_equirect_cases(&all);
     bench_square_cases(&all);
@@ -183,6 +196,17 @@ static int measure_and_report(const bench_list *list, const bench_options *optio
     return status;
 }
 
+static int draw_models(const bench_options *options) {
+    FILE *file = fopen(options->models, "wb");
+    if (!file)
+        return complain("cannot write", options->models);
+    const int unread = bench_models(file, options->env, options->env_count);
+    const int failed = ferror(file);
+    if (fclose(file) != 0 || failed)
+        return complain("cannot write", options->models);
+    return unread ? complain("cannot read panorama", options->env[unread - 1]) : 0;
+}
+
 int main(int argc, char **argv) {
     bench_options options;
     if (parse(argc, argv, &options))
@@ -191,6 +215,8 @@ int main(int argc, char **argv) {
         fputs(usage, stdout);
         return 0;
     }
+    if (options.models)
+        return draw_models(&options);
     bench_list list = matching_cases(options.filter);
     int status = 0;
     if (list.count == 0)

@@ -37,6 +37,22 @@ static float evaluate_l1_clamped(const model_state *state, const float n[3]) {
     return fmaxf(0.0f, sh_irradiance(SH_L1, state->c, n));
 }
 
+static float evaluate_zh3(const model_state *state, const float n[3]) {
+    return sh_irradiance_zh3(state->c, n);
+}
+
+static float evaluate_geomerics(const model_state *state, const float n[3]) {
+    return sh_irradiance_geomerics(state->c, n);
+}
+
+static void prepare_closure_l1(const float *c, model_state *state) {
+    sh_closure_prepare(SH_L1, 1, c, 0, &state->closure);
+}
+
+static float evaluate_closure_l1(const model_state *state, const float n[3]) {
+    return sh_closure_irradiance(SH_L1, &state->closure, n);
+}
+
 static float evaluate_l2(const model_state *state, const float n[3]) {
     return sh_irradiance(SH_L2, state->c, n);
 }
@@ -45,13 +61,37 @@ static float evaluate_l2_clamped(const model_state *state, const float n[3]) {
     return fmaxf(0.0f, sh_irradiance(SH_L2, state->c, n));
 }
 
+static float evaluate_l2_bounded(const model_state *state, const float n[3]) {
+    float lo, hi;
+    sh_irradiance_bounds(SH_L2, state->c, n, &lo, &hi);
+    return fmaxf(lo, fminf(hi, sh_irradiance(SH_L2, state->c, n)));
+}
+
+static void prepare_closure_l2(const float *c, model_state *state) {
+    sh_closure_prepare(SH_L2, 1, c, 0, &state->closure);
+}
+
+static void prepare_closure_floor(const float *c, model_state *state) {
+    sh_closure_prepare(SH_L2, 1, c, SH_AMBIENT_FLOOR, &state->closure);
+}
+
+static float evaluate_closure_l2(const model_state *state, const float n[3]) {
+    return sh_closure_irradiance(SH_L2, &state->closure, n);
+}
+
 /* Sorted by order. */
 static const model models[] = {
     { "L0", "R0, the mean radiance", SH_L0, NULL, evaluate_l0 },
     { "L1 linear", "R0 + 2 R1.n", SH_L1, NULL, evaluate_l1 },
     { "L1 clamped", "max(0, L1 linear)", SH_L1, NULL, evaluate_l1_clamped },
+    { "L1 ZH3", "L2 hallucinated along R1", SH_L1, NULL, evaluate_zh3 },
+    { "L1 Geomerics", "R0 (a + (1-a)(p+1) q^p)", SH_L1, NULL, evaluate_geomerics },
+    { "L1 closure", "bands up to 6 from R1, bounded", SH_L1, prepare_closure_l1, evaluate_closure_l1 },
     { "L2 linear", "R0 + 2 R1.n + 15/8 n'R2 n", SH_L2, NULL, evaluate_l2 },
     { "L2 clamped", "max(0, L2 linear)", SH_L2, NULL, evaluate_l2_clamped },
+    { "L2 bounded", "L2 linear within proven bounds", SH_L2, NULL, evaluate_l2_bounded },
+    { "L2 closure", "bands up to 6 from R2, bounded", SH_L2, prepare_closure_l2, evaluate_closure_l2 },
+    { "L2 over floor", "L2 closure, ambient floor apart", SH_L2, prepare_closure_floor, evaluate_closure_l2 },
 };
 
 enum { MODELS = sizeof models / sizeof models[0] };

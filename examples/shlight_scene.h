@@ -10,6 +10,7 @@
 /* What a model prepares of one channel's coefficients, once for many normals. */
 typedef union model_state {
     float c[SH_COUNT(SH_L2)];
+    sh_closure closure;
 } model_state;
 
 typedef struct model {

@@ -117,7 +117,7 @@ order_run() { # order_run N MODELS
     [ "$status" = 0 ] && [ "$(sed -n '/^model/,/^$/p' out.txt | grep -c '^L')" = "$2" ] && [ "$(grep -c '^R[012]' out.txt)" = "$3" ]
 }
 check '--order 0: one model, one coefficient' order_run 0 1 1
-check '--order 1: three models, four coefficients' order_run 1 3 4
+check '--order 1: six models, four coefficients' order_run 1 6 4
 
 # ---- Every format reads the same ------------------------------------------------------------------------------------------------------
 
