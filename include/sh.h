@@ -475,7 +475,7 @@ SHI_FUNCTION void sh_accum_total(int order, int channels, const sh_accum *accum,
 SHI_FUNCTION int sh_project_function(int order, int channels, sh_function f, void *user, int degree, float *c);
 
 /* Direction i of a columns x rows stratification of the sphere into equal areas, jittered by `seed`: i in [0, columns * rows),
- * row by row from +z; larger i wrap round with a new jitter. Reproducible: equal arguments, equal directions. */
+ * row by row from +z; larger i wrap round with a new jitter. columns and rows are at least 1. Equal arguments give equal directions. */
 SHI_FUNCTION void sh_direction_stratified(uint32_t i, uint32_t columns, uint32_t rows, uint32_t seed, float dir[3]);
 
 /* Direction i of an endless low-discrepancy sequence, uniform on the sphere; `seed` shifts it. Any prefix is well distributed.
@@ -510,7 +510,7 @@ SHI_INLINE void sh_irradiance_probes_batch(int order, int channels, const float 
                                            float *out, size_t count);
 
 /* c = weighted mean of value * basis over `count` directions x[i], y[i], z[i]. value is planar: channel k is value[k * count + i].
- * weight NULL: all equal. The sums are in double: no stagnation, relative error 1e-7. */
+ * weight NULL: all equal. Sums of runs are in double: no stagnation. Error <= 5e-7 of the weighted mean of |value|. */
 SHI_INLINE int sh_project_samples(int order, int channels, const float *x, const float *y, const float *z, const float *value,
                                     const float *weight, size_t count, float *c);
 
@@ -557,7 +557,8 @@ SHI_FUNCTION int sh_image_channels(const sh_image *image);
  * Row 0 is at +z; column x is at azimuth 2 pi (x + 1/2) / width, from +x to +y: on the inside of the sphere, columns run to the left.
  * For a panorama as a camera sees it, columns to the right, pass SH_CLOCKWISE.
  * Texels are area averages: the basis is integrated over each exactly. With SH_POINT_TEXELS they are point samples: exact for
- * images of bands up to degree min(width, height) - 3. Error <= 1e-7 of the mean of |radiance|. report may be NULL. */
+ * images of bands up to degree min(width, height) - 3, from 3 x 3 up. Error <= 1e-6 of the mean of |radiance|, reached by equal texels,
+ * whose roundings add up; 1e-7 on photographs. report may be NULL. */
 SHI_INLINE int sh_project_equirect(int order, const sh_image *image, unsigned flags, float *c, sh_report *report);
 
 /* Adds rows [first_row, first_row + row_count) to accum[sh_image_channels(image)], and to report: time slices, dirty tiles, half
@@ -567,8 +568,8 @@ SHI_INLINE int sh_project_equirect_rows(int order, const sh_image *image, unsign
 
 /* Projects a cube map: six square faces of one size and format, +x, -x, +y, -y, +z, -z, oriented as OpenGL and Direct3D do (rows from
  * the top). A texel is light from the direction of its centre, weighted by its solid angle: for smooth light, off by 1 / size^2 of it.
- * The weights are within 1e-6 of themselves at every size, and their sum is divided out. Error of the sums <= 3e-7 of the mean of
- * |radiance|. Flag: SH_CLAMP_NEGATIVE. */
+ * The weights are within 1e-6 of themselves at every size, and their sum is divided out. Error of the sums <= 1e-6 of the mean of
+ * |radiance|, 1e-7 on photographs. Flag: SH_CLAMP_NEGATIVE. */
 SHI_INLINE int sh_project_cubemap(int order, const sh_image face[6], unsigned flags, float *c, sh_report *report);
 
 /* Adds rows [first_row, first_row + row_count) of all six faces, as sh_project_equirect_rows does. A range that is symmetric about the
@@ -765,23 +766,23 @@ SHI_INLINE void sh_zonal_add(int order, const float zonal[3], const float dir[3]
 /* ---- Analysis ------------------------------------------------------------------------------------------------------------------- */
 
 /* The length of v, and v / |v| (+z where v = 0). In double no square of a float overflows or underflows. */
-SHI_FUNCTION float shi_normalize(const float v[3], float unit[3]) {
+SHI_FUNCTION double shi_normalize(const float v[3], float unit[3]) {
     const double x = (double)v[0], y = (double)v[1], z = (double)v[2], length = sqrt(x * x + y * y + z * z);
     if (length > 0)
         shi_set3((float)(x / length), (float)(y / length), (float)(z / length), unit);
     else
         shi_set3(0.0f, 0.0f, 1.0f, unit);
-    return (float)length;
+    return length;
 }
 
 SHI_FUNCTION float sh_average_direction(const float *c, float dir[3]) {
-    return shi_normalize(c + SH_X, dir);
+    return (float)shi_normalize(c + SH_X, dir);
 }
 
 SHI_FUNCTION float sh_directionality(const float *c) {
     float dir[3];
-    const float length = sh_average_direction(c, dir);
-    return c[SH_R0] > 0.0f ? shi_clamp(length / c[SH_R0], 0.0f, 1.0f) : 0.0f;
+    const double length = shi_normalize(c + SH_X, dir);
+    return c[SH_R0] > 0.0f ? shi_clamp((float)(length / (double)c[SH_R0]), 0.0f, 1.0f) : 0.0f;
 }
 
 SHI_FUNCTION void sh_dominant_light(int order, int channels, const float *c, float dir[3], float *intensity, float *ambient) {
@@ -1056,9 +1057,10 @@ SHI_INLINE double shi_dot3d(const double a[3], const double b[3]) {
 }
 
 SHI_INLINE void shi_cross(const double a[3], const double b[3], double out[3]) {
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
+    const double x = a[1] * b[2] - a[2] * b[1], y = a[2] * b[0] - a[0] * b[2], z = a[0] * b[1] - a[1] * b[0];
+    out[0] = x;
+    out[1] = y;
+    out[2] = z;
 }
 
 /* cos(acos(r) / 3) for r in [0, 1], the largest root of 4 x^3 - 3 x = r: a Newton step from a fit that is off by 1e-5; error <
@@ -1438,11 +1440,10 @@ SHI_FUNCTION void sh_accum_clear(int channels, sh_accum *accum) {
     }
 }
 
-SHI_INLINE void sh_accum_sample(int order, const float dir[3], float value, float weight, sh_accum *accum) {
-    const double x = (double)dir[0], y = (double)dir[1], z = (double)dir[2], third = 1.0 / 3.0;
-    const double v = (double)weight * (double)value;
+SHI_INLINE void shi_accum_sample(int order, const float dir[3], double value, double weight, sh_accum *accum) {
+    const double x = (double)dir[0], y = (double)dir[1], z = (double)dir[2], third = 1.0 / 3.0, v = weight * value;
     double *sum = accum->sum;
-    accum->weight += (double)weight;
+    accum->weight += weight;
     sum[SH_R0] += v;
     if (order >= SH_L1) {
         sum[SH_X] += v * x;
@@ -1456,6 +1457,10 @@ SHI_INLINE void sh_accum_sample(int order, const float dir[3], float value, floa
         sum[SH_YY] += v * (y * y - third);
         sum[SH_YZ] += v * (y * z);
     }
+}
+
+SHI_INLINE void sh_accum_sample(int order, const float dir[3], float value, float weight, sh_accum *accum) {
+    shi_accum_sample(order, dir, (double)value, (double)weight, accum);
 }
 
 SHI_FUNCTION void sh_accum_merge(int channels, const sh_accum *from, sh_accum *into) {
@@ -1512,13 +1517,13 @@ SHI_FUNCTION int sh_project_function(int order, int channels, sh_function f, voi
     sh_accum_clear(channels, accum);
     for (int i = 0; i < rows; i++) {
         double z;
-        const float weight = (float)shi_gauss_legendre(i, rows, &z);
+        const double weight = shi_gauss_legendre(i, rows, &z);
         for (int j = 0; j < columns; j++) {
             float dir[3], value[SH_MAX_CHANNELS];
             shi_polar_direction(z, 2.0 * SHI_PI * (j + 0.5) / columns, dir);
             f(dir, value, user);
             for (int k = 0; k < channels; k++)
-                sh_accum_sample(order, dir, value[k], weight, accum + k);
+                shi_accum_sample(order, dir, (double)value[k], weight, accum + k);
         }
     }
     sh_accum_finish(order, channels, accum, c);
@@ -1803,13 +1808,6 @@ SHI_FUNCTION void sh_add_vmf(int order, int channels, const float dir[3], float 
 
 SHI_INLINE double shi_dot(const double a[3], const double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-SHI_INLINE void shi_cross(const double a[3], const double b[3], double out[3]) {
-    const double x = a[1] * b[2] - a[2] * b[1], y = a[2] * b[0] - a[0] * b[2], z = a[0] * b[1] - a[1] * b[0];
-    out[0] = x;
-    out[1] = y;
-    out[2] = z;
 }
 
 /* out = a + t b */
@@ -3583,10 +3581,10 @@ SHI_INLINE void shi_add_zonal(int order, int channels, const float zonal[3], con
 
 /* ---- Images ---------------------------------------------------------------------------------------------------------------------
  * Rows are read in blocks of up to SHI_BLOCK pixels: in place where they are clean floats, decoded to floats otherwise, padded with
- * black to whole vectors. Float vectors add up a group of SHI_GROUP rows, doubles the groups. Interleaved channels stay so: vectors
- * repeat their channels every `phases`. */
+ * black to whole vectors. Float vectors add up SHI_CHAIN blocks of a row, then a group of SHI_GROUP rows; doubles add up the groups.
+ * Interleaved channels stay so: vectors repeat their channels every `phases`. */
 
-enum { SHI_BLOCK = 128, SHI_PHASES = 4, SHI_GROUP = 16 };
+enum { SHI_BLOCK = SHI_LANES == 1 ? 32 : 128, SHI_PHASES = 4, SHI_GROUP = 16, SHI_CHAIN = 32 };
 
 /* How texels lie in memory, and in the blocks that the kernels read: `planes` planes of `interleave` interleaved channels. */
 typedef struct shi_layout {
@@ -3810,7 +3808,8 @@ typedef struct shi_columns {
 
 SHI_FUNCTION void shi_columns_init(int width, int interleave, int point, shi_columns *columns) {
     const double step = 2.0 * SHI_PI / width;
-    for (int i = 0; i < SHI_BLOCK && i < width; i++) {
+    const int padded = width < SHI_BLOCK ? (int)shi_round_up((size_t)width) : SHI_BLOCK;
+    for (int i = 0; i < padded; i++) {
         const double c = cos((i + 0.5) * step), s = sin((i + 0.5) * step);
         for (int j = i * interleave; j < (i + 1) * interleave; j++) {
             float *t = columns->table + j / SHI_LANES * 4 * SHI_LANES + j % SHI_LANES;
@@ -3967,44 +3966,59 @@ SHI_INLINE void shi_row_spread(int order, const shi_row_weights *w, shi_v sums[S
     }
 }
 
-/* Reads one or two rows, starting at `row`, sums each over its columns, and spreads the sums into the group. */
+/* The azimuth of a block's first column. */
+typedef struct shi_azimuth {
+    double cos, sin;
+} shi_azimuth;
+
+SHI_INLINE shi_azimuth shi_azimuth_next(shi_azimuth p, const shi_columns *columns) {
+    const shi_azimuth next = { p.cos * columns->block_cos - p.sin * columns->block_sin,
+                               p.sin * columns->block_cos + p.cos * columns->block_sin };
+    return next;
+}
+
+/* Adds the block at column x of one or two rows from `row` on, and of what lies half a turn further if the row folds. */
+SHI_INLINE void shi_fold_columns(int order, shi_reader *reader, const shi_columns *columns, int row, int rows, int x, int count,
+                                 shi_azimuth p, shi_v total[2][SHI_PHASES][SHI_SUMS], shi_v *signs) {
+    const int folds = reader->image->width % 2 == 0, further = folds ? reader->image->width / 2 + x : x;
+    const int interleave = reader->layout.interleave, padded = (int)shi_round_up((size_t)count);
+    const float turn[4] = { (float)p.cos, (float)p.sin, (float)(p.cos * p.cos - p.sin * p.sin), (float)(2.0 * p.cos * p.sin) };
+    const unsigned char *here[2], *opposite[2];
+    shi_scratch scratch[4];
+    for (int r = 0; r < 2; r++) {
+        here[r] = r < rows ? shi_read_block(reader, row + r, x, count, padded, &scratch[2 * r]) : here[0];
+        opposite[r] = r < rows ? shi_read_block(reader, row + r, further, folds ? count : 0, padded, &scratch[2 * r + 1]) : opposite[0];
+        if (reader->look_for_negative)
+            *signs = shi_or(*signs, shi_or(shi_signs(here[r], padded * interleave), shi_signs(opposite[r], padded * interleave)));
+    }
+    for (int plane = 0; plane < reader->layout.planes; plane++) {
+        shi_fold_block(order, here, opposite, padded * interleave, shi_phases(interleave), columns, turn, total[0] + plane,
+                       total[1] + plane);
+        for (int r = 0; r < 2; r++) {
+            here[r] += SHI_BLOCK * sizeof(float);
+            opposite[r] += SHI_BLOCK * sizeof(float);
+        }
+    }
+}
+
+/* Sums one or two rows over their columns, and spreads the sums into the group. */
 SHI_INLINE void shi_fold_rows(int order, shi_reader *reader, const shi_columns *columns, int row, int rows, const shi_row_weights *w,
                               shi_group *group) {
-    const int width = reader->image->width, folds = width % 2 == 0, end = folds ? width / 2 : width;
-    const int interleave = reader->layout.interleave, planes = reader->layout.planes, phases = shi_phases(interleave);
-    double c = 1.0, s = 0.0;
-    shi_scratch scratch[4];
-    shi_v total[2][SHI_PHASES][SHI_SUMS];
-    for (int phase = 0; phase < planes + phases - 1; phase++)
-        for (int i = 0; i < SHI_SUMS; i++)
-            total[0][phase][i] = total[1][phase][i] = shi_splat(0.0f);
-    for (int x = 0; x < end; x += SHI_BLOCK) {
-        const int count = end - x < SHI_BLOCK ? end - x : SHI_BLOCK, padded = (int)shi_round_up((size_t)count);
-        const float turn[4] = { (float)c, (float)s, (float)(c * c - s * s), (float)(2.0 * c * s) };
-        const unsigned char *here[2], *opposite[2];
-        for (int r = 0; r < 2; r++) {
-            here[r] = r < rows ? shi_read_block(reader, row + r, x, count, padded, &scratch[2 * r]) : here[0];
-            opposite[r] = r < rows ? shi_read_block(reader, row + r, folds ? end + x : x, folds ? count : 0, padded, &scratch[2 * r + 1])
-                                   : opposite[0];
-            if (reader->look_for_negative)
-                group->signs = shi_or(group->signs, shi_or(shi_signs(here[r], padded * interleave),
-                                                           shi_signs(opposite[r], padded * interleave)));
-        }
-        for (int plane = 0; plane < planes; plane++) {
-            shi_fold_block(order, here, opposite, padded * interleave, phases, columns, turn, total[0] + plane, total[1] + plane);
-            for (int r = 0; r < 2; r++) {
-                here[r] += SHI_BLOCK * sizeof(float);
-                opposite[r] += SHI_BLOCK * sizeof(float);
-            }
-        }
-        const double next = c * columns->block_cos - s * columns->block_sin;
-        s = s * columns->block_cos + c * columns->block_sin;
-        c = next;
+    const int width = reader->image->width, end = width % 2 ? width : width / 2;
+    const int vectors = reader->layout.planes + shi_phases(reader->layout.interleave) - 1; /* one of the two is 1 */
+    shi_azimuth p = { 1.0, 0.0 };
+    for (int x = 0; x < end;) {
+        const int stop = end - x > SHI_CHAIN * SHI_BLOCK ? x + SHI_CHAIN * SHI_BLOCK : end;
+        shi_v total[2][SHI_PHASES][SHI_SUMS];
+        for (int v = 0; v < vectors; v++)
+            for (int i = 0; i < SHI_SUMS; i++)
+                total[0][v][i] = total[1][v][i] = shi_splat(0.0f);
+        for (; x < stop; x += SHI_BLOCK, p = shi_azimuth_next(p, columns))
+            shi_fold_columns(order, reader, columns, row, rows, x, stop - x < SHI_BLOCK ? stop - x : SHI_BLOCK, p, total, &group->signs);
+        for (int r = 0; r < rows; r++)
+            for (int v = 0; v < vectors; v++)
+                shi_row_spread(order, &w[r], total[r][v], group->moment[v]);
     }
-    for (int r = 0; r < rows; r++)
-        for (int plane = 0; plane < planes; plane++)
-            for (int phase = 0; phase < phases; phase++)
-                shi_row_spread(order, &w[r], total[r][plane + phase], group->moment[plane + phase]);
 }
 
 SHI_FUNCTION void shi_group_clear(shi_group *group) {
@@ -4137,8 +4151,9 @@ SHI_INLINE int shi_equirect_rows(int order, const shi_rows *job) {
     if (status != SH_OK)
         return status;
     shi_columns_init(image->width, reader.layout.interleave, point, &columns);
-    for (int row = job->first; row < end; row += SHI_GROUP) {
-        const int rows = end - row < SHI_GROUP ? end - row : SHI_GROUP;
+    const int group_rows = image->width > SHI_CHAIN * SHI_BLOCK ? 2 : SHI_GROUP; /* long rows: short chains of float sums */
+    for (int row = job->first; row < end; row += group_rows) {
+        const int rows = end - row < group_rows ? end - row : group_rows;
         double moment[3][SHI_MOMENTS] = { { 0 } };
         shi_row_weights w[SHI_GROUP];
         shi_row_weights_init(row, rows, image->height, point, w);

@@ -92,7 +92,7 @@ static inline void test_image_fill(const test_image *of, double low, double high
 }
 
 /* The contract of a projection: its error by the mean of |radiance| of the channel. */
-static const long double test_projection_tolerance = 1e-7L;
+static const long double test_projection_tolerance = 1e-6L;
 
 /* Compares a projection by sh.h with the oracle's. */
 static inline void test_projection_near(int order, int channels, const float *c, const oracle_projection *expected) {

@@ -69,7 +69,7 @@ static inline void oracle_texel(const sh_image *image, int x, int y, long double
             value[k] = oracle_half(half);
             break;
         case SH_RGBE8:
-            value[k] = byte[3] < 10 ? 0.0L : ldexpl((long double)byte[k], byte[3] - 136);
+            value[k] = byte[3] == 0 ? 0.0L : ldexpl((long double)byte[k], (byte[3] < 255 ? byte[3] : 254) - 136);
             break;
         case SH_RGB9E5:
             value[k] = ldexpl((long double)(word >> 9 * k & 511u), (int)(word >> 27) - 24);
