@@ -622,10 +622,22 @@ SHI_INLINE void sh_lerp(int order, const float *a, const float *b, float t, floa
         out[i] = (1.0f - t) * a[i] + t * b[i];
 }
 
-SHI_INLINE void sh_add_sample(int order, const float dir[3], float value, float *c) {
-    float basis[SH_COUNT(SH_L2)];
+SHI_INLINE void shi_add_sample_scalar(int order, const float dir[3], float value, float *c) {
+    float basis[SH_COUNT(SH_L2)] = { 0 };
     sh_basis(order, dir, basis);
     sh_madd(order, basis, value, c);
+}
+
+#ifndef SH_NO_BATCH
+SHI_INLINE void shi_add_sample(int order, const float dir[3], float value, float *c); /* on vectors, with the batches of operators */
+#else
+SHI_INLINE void shi_add_sample(int order, const float dir[3], float value, float *c) {
+    shi_add_sample_scalar(order, dir, value, c);
+}
+#endif
+
+SHI_INLINE void sh_add_sample(int order, const float dir[3], float value, float *c) {
+    shi_add_sample(order, dir, value, c);
 }
 
 SHI_INLINE float shi_dot3(const float a[3], const float b[3]) {
@@ -757,7 +769,7 @@ SHI_INLINE void sh_convolve(int order, const float *c, const float zonal[3], flo
 }
 
 SHI_INLINE void sh_zonal_add(int order, const float zonal[3], const float dir[3], float value, float *c) {
-    float lobe[SH_COUNT(SH_L2)];
+    float lobe[SH_COUNT(SH_L2)] = { 0 };
     sh_basis(order, dir, lobe);
     sh_convolve(order, lobe, zonal, lobe);
     sh_madd(order, lobe, value, c);
@@ -3556,6 +3568,18 @@ SHI_INLINE shi_v shi_basis_vector(const float dir[3], int first) {
     return shi_madd(p, q, shi_load(minus_r + first));
 }
 
+SHI_INLINE void shi_add_sample(int order, const float dir[3], float value, float *c) {
+    if (order < SH_L2) {
+        shi_add_sample_scalar(order, dir, value, c);
+        return;
+    }
+    c[SH_R0] += value;
+    for (int first = 0; first < SHI_ROTATED; first += SHI_LANES) {
+        float *at = c + SH_X + first;
+        shi_store(at, shi_madd(shi_splat(value), shi_basis_vector(dir, first), shi_load(at)));
+    }
+}
+
 SHI_INLINE void shi_add_zonal(int order, int channels, const float zonal[3], const float dir[3], const float *value, float *c) {
     static const float is_first[8] = { 1, 1, 1 }, is_second[8] = { 0, 0, 0, 1, 1, 1, 1, 1 };
     if (order < SH_L2) {
@@ -3574,6 +3598,10 @@ SHI_INLINE void shi_add_zonal(int order, int channels, const float zonal[3], con
     }
 }
 #else
+SHI_INLINE void shi_add_sample(int order, const float dir[3], float value, float *c) {
+    shi_add_sample_scalar(order, dir, value, c);
+}
+
 SHI_INLINE void shi_add_zonal(int order, int channels, const float zonal[3], const float dir[3], const float *value, float *c) {
     shi_add_zonal_scalar(order, channels, zonal, dir, value, c);
 }
