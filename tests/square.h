@@ -22,7 +22,7 @@ typedef struct square_map {
 
 /* ---- By definition ---- */
 
-/* The contract: of the mean of |radiance|, where weights are exact. */
+/* Of the mean of |radiance|, with some to spare below the contract's 1e-6. */
 static const long double square_tolerance = 3e-7L;
 
 /* Of one row of thousands of equal texels: where vectors have few lanes, each adds up many of them in float. */
