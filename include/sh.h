@@ -3287,11 +3287,11 @@ SHI_INLINE void shi_sum_chunk(int order, const float *x, const float *y, const f
         }
         s0 = shi_add(s0, v);
         if (order >= SH_L1) {
-            const shi_v vx = shi_mul(v, px), vy = shi_mul(v, py), vz = shi_mul(v, pz);
-            sx = shi_add(sx, vx);
-            sy = shi_add(sy, vy);
-            sz = shi_add(sz, vz);
+            sx = shi_madd(v, px, sx);
+            sy = shi_madd(v, py, sy);
+            sz = shi_madd(v, pz, sz);
             if (order >= SH_L2) {
+                const shi_v vx = shi_mul(v, px), vy = shi_mul(v, py);
                 sxx = shi_madd(vx, px, sxx);
                 sxy = shi_madd(vx, py, sxy);
                 sxz = shi_madd(vx, pz, sxz);

@@ -76,7 +76,8 @@ single() {
         fi
         before=$6
         [ "$4" -eq 0 ] || check "$name: jumps and calls" "$7" -eq 0
-        check "$name: offset beyond the coefficients" "$9" -lt $(($3 * (order + 1) * (order + 1)))
+        # The highest order has no bands above it; its vector kernels address tables of their own.
+        [ "$order" -eq 2 ] || check "$name: offset beyond the coefficients" "$9" -lt $(($3 * (order + 1) * (order + 1)))
     done
 }
 
