@@ -622,22 +622,10 @@ SHI_INLINE void sh_lerp(int order, const float *a, const float *b, float t, floa
         out[i] = (1.0f - t) * a[i] + t * b[i];
 }
 
-SHI_INLINE void shi_add_sample_scalar(int order, const float dir[3], float value, float *c) {
+SHI_INLINE void sh_add_sample(int order, const float dir[3], float value, float *c) {
     float basis[SH_COUNT(SH_L2)] = { 0 };
     sh_basis(order, dir, basis);
     sh_madd(order, basis, value, c);
-}
-
-#ifndef SH_NO_BATCH
-SHI_INLINE void shi_add_sample(int order, const float dir[3], float value, float *c); /* on vectors, with the batches of operators */
-#else
-SHI_INLINE void shi_add_sample(int order, const float dir[3], float value, float *c) {
-    shi_add_sample_scalar(order, dir, value, c);
-}
-#endif
-
-SHI_INLINE void sh_add_sample(int order, const float dir[3], float value, float *c) {
-    shi_add_sample(order, dir, value, c);
 }
 
 SHI_INLINE float shi_dot3(const float a[3], const float b[3]) {
@@ -3283,9 +3271,11 @@ SHI_INLINE void shi_sum_chunk(int order, const float *x, const float *y, const f
         if (weight) {
             const shi_v w = shi_load(weight + i);
             w0 = shi_add(w0, w);
+            s0 = shi_madd(v, w, s0);
             v = shi_mul(v, w);
+        } else {
+            s0 = shi_add(s0, v);
         }
-        s0 = shi_add(s0, v);
         if (order >= SH_L1) {
             sx = shi_madd(v, px, sx);
             sy = shi_madd(v, py, sy);
@@ -3568,18 +3558,6 @@ SHI_INLINE shi_v shi_basis_vector(const float dir[3], int first) {
     return shi_madd(p, q, shi_load(minus_r + first));
 }
 
-SHI_INLINE void shi_add_sample(int order, const float dir[3], float value, float *c) {
-    if (order < SH_L2) {
-        shi_add_sample_scalar(order, dir, value, c);
-        return;
-    }
-    c[SH_R0] += value;
-    for (int first = 0; first < SHI_ROTATED; first += SHI_LANES) {
-        float *at = c + SH_X + first;
-        shi_store(at, shi_madd(shi_splat(value), shi_basis_vector(dir, first), shi_load(at)));
-    }
-}
-
 SHI_INLINE void shi_add_zonal(int order, int channels, const float zonal[3], const float dir[3], const float *value, float *c) {
     static const float is_first[8] = { 1, 1, 1 }, is_second[8] = { 0, 0, 0, 1, 1, 1, 1, 1 };
     if (order < SH_L2) {
@@ -3598,10 +3576,6 @@ SHI_INLINE void shi_add_zonal(int order, int channels, const float zonal[3], con
     }
 }
 #else
-SHI_INLINE void shi_add_sample(int order, const float dir[3], float value, float *c) {
-    shi_add_sample_scalar(order, dir, value, c);
-}
-
 SHI_INLINE void shi_add_zonal(int order, int channels, const float zonal[3], const float dir[3], const float *value, float *c) {
     shi_add_zonal_scalar(order, channels, zonal, dir, value, c);
 }
