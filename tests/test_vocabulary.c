@@ -112,7 +112,7 @@ static float s_or(float a, float b, float c) { return (void)c, from_bits(bits_of
 static float s_fused(float a, float b, float c) { return fmaf(a, b, c); }
 static float s_rounded(float a, float b, float c) {
     const volatile float product = a * b; /* volatile: no compiler may fuse it */
-    return product + c;
+    return flushed(product) + c;
 }
 static float s_less(float a, float b, float c) { return (void)c, a < b ? 1.0f : 0.0f; }
 static float s_select(float a, float b, float c) { return a < b ? c : a; }
