@@ -209,8 +209,8 @@ static void pick_set(int order, int kind, float *c) {
 
 static void test_batch(int which, size_t count, int channels) {
     enum { MOST = 1300 };
-    static float n[3][MOST], out[CHANNELS * MOST], shifted[CHANNELS * MOST], aos_in[5 * MOST], aos_out[(CHANNELS + 2) * MOST];
-    static float aliased[CHANNELS * MOST + 3 * MOST];
+    static float n[3][MOST], out[(int)CHANNELS * MOST], shifted[(int)CHANNELS * MOST], aos_in[5 * MOST], aos_out[((int)CHANNELS + 2) * MOST];
+    static float aliased[(int)CHANNELS * MOST + 3 * MOST];
     float c[CHANNELS * 9];
     const int order = batches[which].order;
     test_section("%s, %d normals, %d channels", batches[which].name, (int)count, channels);
