@@ -2537,15 +2537,15 @@ SHI_FUNCTION int sh_fit_samples(int order, int channels, const float *x, const f
 SHI_INLINE __m128 shi_load_four(const void *p) { return _mm_loadu_ps((const float *)p); }
 /* The first n <= 4 floats of a. */
 SHI_INLINE void shi_store_four(void *p, int n, __m128 a) {
-    float *q = (float *)p;
+    const float first = _mm_cvtss_f32(a), third = _mm_cvtss_f32(_mm_movehl_ps(a, a));
     if (n == 4)
-        _mm_storeu_ps(q, a);
+        _mm_storeu_ps((float *)p, a);
     else if (n >= 2)
         _mm_storel_pi((__m64 *)p, a);
     if (n == 3)
-        _mm_store_ss(q + 2, _mm_movehl_ps(a, a));
+        memcpy((unsigned char *)p + 2 * sizeof third, &third, sizeof third);
     else if (n == 1)
-        _mm_store_ss(q, a);
+        memcpy(p, &first, sizeof first);
 }
 #endif
 
