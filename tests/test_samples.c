@@ -141,7 +141,14 @@ static void splits(void) {
     }
 }
 
-/* Lower orders are the first bits of higher ones, and touch nothing else. */
+/* One number in each vector: a compiler may fuse a product and a sum of the target's floats in one order and not in another. */
+#if SHI_LANES == 1 && defined(FP_FAST_FMAF)
+static const long double prefix_tolerance = 2e-7L;
+#else
+static const long double prefix_tolerance = 0.0L;
+#endif
+
+/* Lower orders are the first sums of higher ones, and touch nothing else. */
 static void prefixes(void) {
     static const size_t counts[] = { 0, 1, 5, 16, 100, 5000 };
     for (size_t i = 0; i < sizeof counts / sizeof counts[0]; i++)
@@ -155,13 +162,13 @@ static void prefixes(void) {
                 memset(&guard, 0x55, sizeof guard);
                 EQUAL(sh_project_samples(SH_L2, 1, x, y, z, values[1], w, counts[i], all), SH_OK);
                 EQUAL(sh_project_samples(order, 1, x, y, z, values[1], w, counts[i], few), SH_OK);
-                SAME_BITS(few, all, (size_t)SH_COUNT(order) * sizeof(float));
+                NEAR_ALL(few, all, SH_COUNT(order), prefix_tolerance);
                 SAME_BITS(&few[SH_COUNT(order)], &guard, sizeof guard);
                 sh_accum_clear(1, &whole);
                 sh_accum_clear(1, &some);
                 EQUAL(sh_accum_samples(SH_L2, 1, x, y, z, values[1], w, counts[i], &whole), SH_OK);
                 EQUAL(sh_accum_samples(order, 1, x, y, z, values[1], w, counts[i], &some), SH_OK);
-                SAME_BITS(some.sum, whole.sum, (size_t)SH_COUNT(order) * sizeof(double));
+                NEAR_ALL(some.sum, whole.sum, SH_COUNT(order), prefix_tolerance * 4.0L * counts[i]); /* weights below 3 */
                 NEAR(some.weight, whole.weight, 0);
                 for (int j = SH_COUNT(order); j < 9; j++)
                     NEAR(some.sum[j], 0.0, 0);
