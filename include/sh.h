@@ -488,7 +488,7 @@ SHI_FUNCTION void sh_direction_fibonacci(uint32_t i, uint32_t count, float dir[3
 #ifndef SH_NO_BATCH
 /* ---- Batches: many directions at once -------------------------------------------------------------------------------------------
  * Any order, number of channels, count (0 too) and alignment. A result does not depend on its position or on count. Rounding error
- * <= 8 ulp of the sum of absolute terms. out may be an input array. */
+ * <= 8 ulp of the sum of absolute terms, zz among them. out may be an input array. */
 
 /* sh_radiance and sh_irradiance of `channels` planar sets c in directions x[i], y[i], z[i]. out is planar: channel k of direction i
  * is out[k * count + i]. */
@@ -578,7 +578,7 @@ SHI_INLINE int sh_project_cubemap_rows(int order, const sh_image face[6], unsign
                                        sh_report *report);
 
 /* Projects a square octahedral map: at u, v in [-1, 1], rows from v = -1, the direction is (u, v, 1 - |u| - |v|) normalised and, beyond
- * the fold |u| + |v| = 1, ((1 - |v|) sign u, (1 - |u|) sign v, 1 - |u| - |v|). Texels as in sh_project_cubemap; weights within 3e-6.
+ * the fold |u| + |v| = 1, ((1 - |v|) sign u, (1 - |u|) sign v, 1 - |u| - |v|). Texels as in sh_project_cubemap; weights within 5e-6.
  * Leave out a border of repeated texels by pixels and row_stride. */
 SHI_INLINE int sh_project_octahedral(int order, const sh_image *image, unsigned flags, float *c, sh_report *report);
 SHI_INLINE int sh_project_octahedral_rows(int order, const sh_image *image, unsigned flags, int first_row, int row_count,
@@ -4251,7 +4251,7 @@ SHI_INLINE shi_v shi_cube_weight(shi_v u, shi_v v, shi_v t, shi_v r, float e) {
 }
 
 /* The same for the octahedron: rho^2 = a^2 + b^2 + (1 - a - b)^2, a and b the absolute values of u and v; beyond the fold a + b = 1
- * the map is its own mirror image. A texel cut by the fold counts as the triangle before it. To e^2: off by < 3e-6 for e <= 1/64. */
+ * the map is its own mirror image. A texel cut by the fold counts as the triangle before it. To e^2: off by < 5e-6 for e <= 1/64. */
 SHI_INLINE shi_v shi_octahedron_weight(shi_v u, shi_v v, float e) {
     const shi_v one = shi_splat(1.0f), minus = shi_splat(-1.0f), half = shi_splat(0.5f * e);
     const shi_v au = shi_abs(u), av = shi_abs(v), over = shi_sub(shi_add(au, av), one);
