@@ -21,7 +21,12 @@
  *               by pi for E in W/m^2.
  *   aliasing    an output may be exactly the same array as an input; partial overlap is undefined.
  *   errors      functions that can be handed bad input return SH_OK or a negative SH_ERROR_..., and write nothing on error.
- *               Arithmetic on coefficients does not look for NaN: NaN in, NaN out. Finite input up to 1e18 never gives NaN.
+ *               Arithmetic does not look for NaN: NaN in, NaN out, of every function of numbers; decisions take NaN for not negligible;
+ *               images leave out texels that are not finite, and count them. Finite input up to 1e18 never gives NaN.
+ *   rounding    an ulp is 2^-23 of what it is of. Where a comment states no bound, a result is within 4 ulp of the sum of its absolute
+ *               terms. Where products underflow, up to 2^-144 times 1 + the largest input more. All of it: docs/accuracy.md.
+ *   fast math   -ffast-math keeps results to 2e-6 and still leaves out bad texels; it gives up NaN in, NaN out, results that are the
+ *               same to the bit, and numbers below 1.2e-38. docs/portability.md.
  *   state       none. No allocation, no globals, no dependency but the C library; everything is static inline.
  *
  * OPTIONS, each a macro to define before including
@@ -29,6 +34,8 @@
  *                the rest. For files that evaluate single directions. Default: everything.
  *   SH_NO_SIMD   forces the portable scalar kernels. Default: the best of what the compiler's target flags allow.
  *   SH_SIMD      one of the SH_SIMD_... numbers below, to force a backend; it is an error if the target lacks it.
+ *   SH_DEVICE    what every function is declared with besides `static inline`. Default: `__host__ __device__` where CUDA or HIP
+ *                compiles, with scalar kernels then; nothing elsewhere. Define it as nothing for host code with vectors in a .cu.
  *
  * DOES NOT  go above L2; read or write image files; pick a tone map; know your engine's axes; allocate; start threads (the ..._rows
  *           forms and sh_accum let you).
@@ -53,19 +60,39 @@
 #define SH_SIMD_NEON 4
 #define SH_SIMD_WASM 5
 
+/* CUDA and HIP: everything for host and device; without intrinsics, which the device lacks. */
+#ifndef SH_DEVICE
+#if defined(__CUDACC__) || defined(__HIPCC__)
+#define SH_DEVICE __host__ __device__
+#ifndef SH_SIMD
+#define SH_SIMD SH_SIMD_SCALAR
+#endif
+#else
+#define SH_DEVICE
+#endif
+#endif
+
 /* Small functions are always inlined, so that a literal order removes what it does not need at every level of optimisation that
  * removes anything. The large ones are left to the compiler. */
 #if defined(__GNUC__) || defined(__clang__)
-#define SHI_INLINE static inline __attribute__((always_inline))
+#define SHI_INLINE SH_DEVICE static inline __attribute__((always_inline))
 #elif defined(_MSC_VER)
-#define SHI_INLINE static __forceinline
+#define SHI_INLINE SH_DEVICE static __forceinline
 #else
-#define SHI_INLINE static inline
+#define SHI_INLINE SH_DEVICE static inline
 #endif
-#define SHI_FUNCTION static inline
+#define SHI_FUNCTION SH_DEVICE static inline
+
+/* Four floats that compilers keep in one register where the target has such, without any header: vectors of GCC's language. */
+#if defined(__GNUC__) && !defined(__TINYC__) && !defined(__CUDACC__)
+#define SHI_HAS_FOUR 1
+typedef float shi_four __attribute__((vector_size(16)));
+#else
+#define SHI_HAS_FOUR 0
+#endif
 
 /* Before a loop over the coefficients of a set: GCC leaves it rolled at -O2. */
-#if defined(__GNUC__) && !defined(__clang__)
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__CUDACC__)
 #define SHI_UNROLL _Pragma("GCC unroll 9")
 #else
 #define SHI_UNROLL
@@ -81,7 +108,7 @@ enum { SH_MAX_CHANNELS = 16 };                                       /* of sh_pr
 enum {
     SH_OK = 0,
     SH_ERROR_ARGUMENT = -1, /* null pointer, order outside 0..2, channels < 1, unknown flag, function degree out of range */
-    SH_ERROR_SIZE = -2,     /* width, height or stride zero, negative, too small for a row, or overflowing size_t; row range outside */
+    SH_ERROR_SIZE = -2,     /* width or height zero, negative or above 2^28; stride too small or overflowing size_t; rows outside */
     SH_ERROR_FORMAT = -3    /* unknown format, or a number of channels that it cannot have */
 };
 
@@ -129,7 +156,7 @@ SHI_INLINE float sh_irradiance(int order, const float *c, const float n[3]);
 SHI_INLINE float sh_irradiance_opposite(int order, const float *c, const float n[3], float irradiance);
 
 /* Irradiance / pi at unit normal n from the directions within a cone about n only, n.w > cos_angle: ambient occlusion by an aperture.
- * cos_angle is clamped to [0, 1]; 0 is sh_irradiance, 1 is 0. */
+ * cos_angle is clamped to [0, 1]; 0 is sh_irradiance, 1 is 0. Rounding error <= 8 ulp of the sum of absolute terms. */
 SHI_INLINE float sh_irradiance_ao(int order, const float *c, const float n[3], float cos_angle);
 
 /* ---- Bounded irradiance and closures: one channel of L1 or L2, one unit normal ---------------------------------------------------
@@ -138,7 +165,7 @@ SHI_INLINE float sh_irradiance_ao(int order, const float *c, const float n[3], f
  * known, and stays between the bounds: never negative, I(n) - I(-n) = 4 n.R1 to rounding, exact for one directional light and
  * for ambient light. Coefficients that no such light has (R0 <= 0, |R1| > R0, or a moment matrix with an eigenvalue below
  * -R0/512, which storage in half floats stays clear of; R0 < 1e-34 counts as black) give the linear reconstruction clamped at 0.
- * Rounding error <= 2e-6 R0 and, where the upper bound is b R0 and decides, 1e-6 R0 / b, since it is a square root. */
+ * Rounding error <= 3e-6 R0 and, where the upper bound is b R0 and decides, 3e-6 R0 / b more, since it is a square root. */
 
 /* Bounds of the true irradiance / pi of any non-negative light that has these coefficients, tight given R0, n.R1 and n'R2 n.
  * L0: 0 and 4 R0. The upper one allows for an error of 8 ulp of R0 in the coefficients. Where they are no light's: lo = hi. */
@@ -150,8 +177,8 @@ SHI_INLINE float sh_irradiance_closure(int order, const float *c, const float n[
 
 /* For comparison and compatibility, from L1: Geomerics' R0 (a + (1 - a) (p + 1) q^p), q = (1 + n.d) / 2, p = 1 + 2r, a = (1 - r)
  * / (1 + r), and ZH3 hallucination: linear L2 with R2 = R0 (.0619677 r + .804984 r^2) (dd' - I/3), clamped at 0, where d = R1 /
- * |R1|, r = |R1| / R0. "Reconstructing Diffuse Lighting from Spherical Harmonic Data", CEDEC 2015; "ZH3: Quadratic Zonal
- * Harmonics", 2024. */
+ * |R1|, r = |R1| / R0. Rounding error <= 4e-6 R0. "Reconstructing Diffuse Lighting from Spherical Harmonic Data", CEDEC 2015;
+ * "ZH3: Quadratic Zonal Harmonics", 2024. */
 SHI_INLINE float sh_irradiance_geomerics(const float *c, const float n[3]);
 SHI_INLINE float sh_irradiance_zh3(const float *c, const float n[3]);
 
@@ -176,7 +203,7 @@ SHI_INLINE float sh_closure_irradiance(int order, const sh_closure *closure, con
 #ifndef SH_NO_BATCH
 /* The same for many normals x[i], y[i], z[i]; out is planar, channel k of normal i is out[k * count + i]. Any number of channels
  * and normals, 0 too. A result does not depend on its position or on count, and is the scalar function's to rounding; the power
- * in Geomerics' model is within 1e-6 of itself. out may be an input array. */
+ * in Geomerics' model is within 1e-6 of itself. out may be x, y or z. */
 SHI_INLINE void sh_irradiance_closure_batch(int order, int channels, const float *c, const float *x, const float *y, const float *z,
                                             float *out, size_t count);
 SHI_INLINE void sh_closure_irradiance_batch(int order, int channels, const sh_closure *closure, const float *x, const float *y,
@@ -198,7 +225,8 @@ SHI_INLINE void sh_irradiance_zh3_batch_aos(int order, int channels, const float
                                             size_t out_stride, size_t count);
 #endif /* SH_NO_BATCH */
 
-/* ---- Zonal kernels: z[l] is the factor of band l under convolution, and the coefficient of band l of the lobe itself ------------- */
+/* ---- Zonal kernels: z[l] is the factor of band l under convolution, and the coefficient of band l of the lobe itself -------------
+ * Rounding error <= 4 ulp of each factor; of the windows, <= 2 ulp of 1. */
 
 SHI_FUNCTION void sh_zonal_lambert(float zonal[3]);                      /* 4 max(0, t): irradiance / pi. 1, 2/3, 1/4 */
 SHI_FUNCTION void sh_zonal_ao(float cos_angle, float zonal[3]);          /* 4 t where t > cos_angle, in [0, 1] */
@@ -238,10 +266,10 @@ SHI_INLINE float sh_irradiance_max(int order, const float *c, float at[3]);
 
 /* The radiance of the largest constant light that can be taken out of an L2 set and leave the moments of a non-negative light:
  * the smallest eigenvalue of [[R0, sqrt3 R1'], [sqrt3 R1, R0 I + 3 R2]]. Negative if the set itself has no such light. Error <=
- * 1e-6 R0. */
+ * 1e-6 of the largest coefficient: of R0, for light. */
 SHI_FUNCTION float sh_ambient_floor(const float *c);
 
-/* Whether some light that is nowhere negative has these coefficients, to 1e-6 R0. Necessary and sufficient. */
+/* Whether some light that is nowhere negative has these coefficients, to 2e-6 R0. Necessary and sufficient. NaN: no. */
 SHI_INLINE int sh_is_realizable(int order, const float *c);
 
 typedef enum sh_window {
@@ -251,15 +279,14 @@ typedef enum sh_window {
 } sh_window;
 
 /* Removes ringing: out = c under the weakest window of a family, one for all channels, for which no channel's radiance is
- * negative anywhere (>= -1e-6 R0, by sh_min); 1e-4 weaker, one is. (Where even weaker ones would do again, since bands fade at
- * different rates, it finds one of the limits.) Returns its parameter: a width (INFINITY: nothing was to be done) or a lambda.
- * R0 < 0 cannot be helped: such channels have no say. At most 40 minima per channel and pass, one pass or two as a rule, nine at
- * most. out may be c. */
+ * negative anywhere (>= -1e-6 R0, by sh_min); under every window that is weaker by 1e-3 or more, one is. Returns its parameter: a
+ * width (INFINITY: nothing was to be done) or a lambda. R0 < 0 cannot be helped: such channels have no say. At most nine
+ * passes of 40 minima a channel; as a rule, two of them with four in all. out may be c. */
 SHI_INLINE float sh_dering(int order, int channels, const float *c, sh_window window, float *out);
 
 /* The lowest order at which the irradiance (or the radiance) of an L2 set, anywhere, differs from L2's by at most `tolerance`,
  * which is absolute. Dropping R2 costs at most 15/8 (15/2) times its largest |eigenvalue|, which is at most sqrt(2/3 R2:R2); R1,
- * 2 |R1| (3 |R1|). */
+ * 2 |R1| (3 |R1|). A band that is not finite is needed. */
 SHI_FUNCTION int sh_order_needed(const float *c, float tolerance);
 SHI_FUNCTION int sh_radiance_order_needed(const float *c, float tolerance);
 
@@ -277,14 +304,15 @@ SHI_INLINE int sh_skip_light(float value, float *budget);
 
 /* The smallest height (power of two, half the width) of an equirectangular panorama, and width of a cube map's face, whose
  * projection to `order` yields irradiance within `tolerance` * R0 of that of any finer image that it is the average of, weighted
- * by texel area. For light that is nowhere negative. At most 2^24. */
+ * by texel area. For light that is nowhere negative. At most 2^24, for a tolerance of 0 or NaN too. */
 SHI_FUNCTION int sh_equirect_size_for(int order, float tolerance);
 SHI_FUNCTION int sh_cubemap_size_for(int order, float tolerance);
 
 /* ---- Operators: one channel, unless they say otherwise --------------------------------------------------------------------------- */
 
 /* Product of the two radiance reconstructions, kept to `order`: light times visibility, environment times mask. Bands of the product
- * above `order` are dropped. Error <= 1e-6 of |a| |b|, |a|^2 = sh_dot(a, a). At L2, with S = (AB + BA)/2 and dev() the symmetric traceless part:
+ * above `order` are dropped. A square is a product with itself: compilers share its terms. Error <= 1e-6 of |a| |b|,
+ * |a|^2 = sh_dot(a, a). At L2, with S = (AB + BA)/2 and dev() the symmetric traceless part:
  *     a0 b0 + 3 a1.b1 + 15/2 A:B,   a0 b1 + b0 a1 + 3 (A b1 + B a1),   a0 B + b0 A + 6/5 dev(a1 b1') + 30/7 dev(S). */
 SHI_INLINE void sh_product(int order, const float *a, const float *b, float *out);
 
@@ -422,7 +450,8 @@ SHI_FUNCTION void sh_pack_shader(const float *c, float out[28]);
 /* `channels` planar sets as halves with one exponent: out has channels * SH_COUNT(order) halves, each coefficient * 2^-e, and e (two's
  * complement) as its last word. The largest lies in [2^14, 2^15): nothing overflows up to 1e38, and only what is 2^-29 of it becomes
  * subnormal. A set that non-negative light can have stays one: its R0 is rounded up as far as that needs, 8 steps of a half at most.
- * Error of irradiance / pi <= 0.003 R0, and <= 0.007 R0 where R0 was rounded up (largest seen: 0.0011, 0.0024). Finite sets only. */
+ * Error of irradiance / pi <= 0.003 R0, and <= 0.007 R0 where R0 was rounded up (largest seen: 0.0011, 0.0024). What is not finite
+ * is stored as 0. */
 SHI_FUNCTION void sh_pack_half(int order, int channels, const float *c, uint16_t *out);
 SHI_FUNCTION void sh_unpack_half(int order, int channels, const uint16_t *in, float *out);
 
@@ -488,7 +517,7 @@ SHI_FUNCTION void sh_direction_fibonacci(uint32_t i, uint32_t count, float dir[3
 #ifndef SH_NO_BATCH
 /* ---- Batches: many directions at once -------------------------------------------------------------------------------------------
  * Any order, number of channels, count (0 too) and alignment. A result does not depend on its position or on count. Rounding error
- * <= 8 ulp of the sum of absolute terms, zz among them. out may be an input array. */
+ * <= 8 ulp of the sum of absolute terms, zz among them. out may be x, y or z. */
 
 /* sh_radiance and sh_irradiance of `channels` planar sets c in directions x[i], y[i], z[i]. out is planar: channel k of direction i
  * is out[k * count + i]. */
@@ -522,7 +551,7 @@ SHI_INLINE int sh_accum_samples(int order, int channels, const float *x, const f
 
 typedef enum sh_format {
     SH_F32,    /* float */
-    SH_F16,    /* IEEE half */
+    SH_F16,    /* IEEE half, subnormal ones on every target */
     SH_RGBE8,  /* Radiance: bytes r, g, b, e; radiance = m 2^(e - 136), 0 for e = 0, e = 255 as 254. 3 channels in 4 bytes */
     SH_RGB9E5, /* shared exponent in a native 32-bit word, red in the low 9 bits; radiance = m 2^(e - 24). 3 channels in 4 bytes */
     SH_SRGB8   /* bytes with the sRGB transfer curve; 255 is radiance 1 */
@@ -623,6 +652,17 @@ SHI_INLINE void sh_lerp(int order, const float *a, const float *b, float t, floa
 }
 
 SHI_INLINE void sh_add_sample(int order, const float dir[3], float value, float *c) {
+#if SHI_HAS_FOUR
+    /* One vector of an L1 set is stored and loaded again by the next sample fast; those of an L2 set would cross cache lines. */
+    if (order == SH_L1) {
+        const shi_four v = { value, value, value, value }, basis = { 1.0f, dir[0], dir[1], dir[2] };
+        shi_four sum;
+        memcpy(&sum, c, sizeof sum);
+        sum = v * basis + sum;
+        memcpy(c, &sum, sizeof sum);
+        return;
+    }
+#endif
     float basis[SH_COUNT(SH_L2)] = { 0 };
     sh_basis(order, dir, basis);
     sh_madd(order, basis, value, c);
@@ -736,13 +776,13 @@ SHI_FUNCTION void sh_zonal_vmf(float sharpness, float zonal[3]) {
 
 SHI_FUNCTION void sh_zonal_hann(float width, float zonal[3]) {
     for (int l = 0; l < 3; l++)
-        zonal[l] = l == 0 ? 1.0f : (float)l < width ? (float)(0.5 + 0.5 * cos(SHI_PI * l / (double)width)) : 0.0f;
+        zonal[l] = l == 0 ? 1.0f : (float)l >= width ? 0.0f : (float)(0.5 + 0.5 * cos(SHI_PI * l / (double)width));
 }
 
 SHI_FUNCTION void sh_zonal_lanczos(float width, float zonal[3]) {
     for (int l = 0; l < 3; l++) {
         const double t = l == 0 ? 0.0 : SHI_PI * l / (double)width;
-        zonal[l] = l == 0 ? 1.0f : (float)l < width ? (float)(t > 1e-8 ? sin(t) / t : 1.0) : 0.0f;
+        zonal[l] = l == 0 ? 1.0f : (float)l >= width ? 0.0f : (float)(t <= 1e-8 ? 1.0 : sin(t) / t);
     }
 }
 
@@ -750,10 +790,26 @@ SHI_FUNCTION void sh_zonal_laplacian(float lambda, float zonal[3]) {
     shi_set3(1.0f, 1.0f / (1.0f + 4.0f * lambda), 1.0f / (1.0f + 36.0f * lambda), zonal);
 }
 
+/* All loads before the stores: out may be c or zonal for all that a compiler knows. */
 SHI_INLINE void sh_convolve(int order, const float *c, const float zonal[3], float *out) {
-    SHI_UNROLL
-    for (int i = 0; i < SH_COUNT(order); i++)
-        out[i] = zonal[i < 1 ? 0 : i < 4 ? 1 : 2] * c[i];
+    const float r0 = zonal[0] * c[SH_R0];
+    if (order < SH_L1) {
+        out[SH_R0] = r0;
+        return;
+    }
+    const float k1 = zonal[1], x = k1 * c[SH_X], y = k1 * c[SH_Y], z = k1 * c[SH_Z];
+    if (order >= SH_L2) {
+        const float k2 = zonal[2], xx = k2 * c[SH_XX], xy = k2 * c[SH_XY], xz = k2 * c[SH_XZ], yy = k2 * c[SH_YY], yz = k2 * c[SH_YZ];
+        out[SH_XX] = xx;
+        out[SH_XY] = xy;
+        out[SH_XZ] = xz;
+        out[SH_YY] = yy;
+        out[SH_YZ] = yz;
+    }
+    out[SH_R0] = r0;
+    out[SH_X] = x;
+    out[SH_Y] = y;
+    out[SH_Z] = z;
 }
 
 SHI_INLINE void sh_zonal_add(int order, const float zonal[3], const float dir[3], float value, float *c) {
@@ -782,7 +838,7 @@ SHI_FUNCTION float sh_average_direction(const float *c, float dir[3]) {
 SHI_FUNCTION float sh_directionality(const float *c) {
     float dir[3];
     const double length = shi_normalize(c + SH_X, dir);
-    return c[SH_R0] > 0.0f ? shi_clamp((float)(length / (double)c[SH_R0]), 0.0f, 1.0f) : 0.0f;
+    return c[SH_R0] <= 0.0f ? 0.0f : shi_clamp((float)(length / (double)c[SH_R0]), 0.0f, 1.0f);
 }
 
 SHI_FUNCTION void sh_dominant_light(int order, int channels, const float *c, float dir[3], float *intensity, float *ambient) {
@@ -793,7 +849,7 @@ SHI_FUNCTION void sh_dominant_light(int order, int channels, const float *c, flo
     shi_normalize(sum, dir);
     for (int k = 0; k < channels; k++) {
         const float *ck = c + k * SH_COUNT(order);
-        const float along = shi_dot3(ck + SH_X, dir), beam = along > 0.0f ? along : 0.0f;
+        const float along = shi_dot3(ck + SH_X, dir), beam = along < 0.0f ? 0.0f : along;
         intensity[k] = 4.0f * beam;
         ambient[k] = ck[SH_R0] - beam;
     }
@@ -838,7 +894,7 @@ SHI_INLINE void sh_irradiance_bounds(int order, const float *c, const float n[3]
     }
     if (order >= SH_L1) {
         square += r0 * r0 * (double)SHI_ULPS;
-        upper = sqrt(square > 0.0 ? square : 0.0);
+        upper = sqrt(square < 0.0 ? 0.0 : square);
     }
     if (upper >= lower) {
         *lo = (float)(2.0 * (lower + m1));
@@ -850,7 +906,6 @@ SHI_INLINE void sh_irradiance_bounds(int order, const float *c, const float n[3]
 SHI_INLINE void shi_prepare_linear(int order, const float *c, sh_closure *out) {
     memset(out, 0, sizeof *out);
     out->model = SHI_LINEAR;
-    out->scale = 1.0f;
     out->even[0] = c[SH_R0];
     if (order >= SH_L1)
         shi_set3(2.0f * c[SH_X], 2.0f * c[SH_Y], 2.0f * c[SH_Z], out->r1);
@@ -885,7 +940,7 @@ SHI_INLINE void shi_prepare_closure_l1(const float *c, sh_closure *out) {
     out->even[0] = k * (1.0f - s * (5.0f / 8.0f + s * (9.0f / 64.0f + s * (65.0f / 1024.0f))));
     out->even[1] = (inside ? v2 * v2 / 3003.0f : 1.0f / 4096.0f) * (1920.0f + s * (1440.0f + 1365.0f * s));
     out->even[2] = -(inside ? v2 / 3003.0f : 1.0f / 16384.0f) * (1680.0f + 4095.0f * s);
-    out->even[3] = 4.0f * (1.0f - SHI_ULPS - s);
+    out->even[3] = shi_larger(4.0f * (1.0f - SHI_ULPS - s), 0.0f);
 }
 
 SHI_INLINE float shi_determinant(const float a[6]) {
@@ -893,8 +948,11 @@ SHI_INLINE float shi_determinant(const float a[6]) {
 }
 
 /* Whether [[g, sqrt3 u'], [sqrt3 u, g I + 3 A]] has no eigenvalue below about -g/512: Sylvester's criterion on what eliminating
- * the first row of the matrix so shifted leaves. */
-SHI_INLINE int shi_is_real(float g, const float u[3], const float a[6]) {
+ * the first row of the matrix so shifted leaves. f is A:A. A light has u.u <= g^2 and f <= 2/3 g^2; far beyond, minors that cancel
+ * round to either sign. */
+SHI_INLINE int shi_is_real(float g, const float u[3], const float a[6], float f) {
+    if (!(shi_dot3(u, u) + f <= 2.0f * g * g))
+        return 0;
     const float head = g * (1.0f + SHI_UNREAL), k = 3.0f / head;
     const float b[6] = { head + 3.0f * a[0] - k * u[0] * u[0], 3.0f * a[1] - k * u[0] * u[1], 3.0f * a[2] - k * u[0] * u[2],
                          head + 3.0f * a[3] - k * u[1] * u[1], 3.0f * a[4] - k * u[1] * u[2], head + 3.0f * a[5] - k * u[2] * u[2] };
@@ -913,9 +971,9 @@ SHI_INLINE int shi_prepare_closure_l2(const float *c, float ambient, sh_closure 
     for (int i = 0; i < 5; i++)
         a[i] = c[SH_XX + i] * inverse;
     a[5] = -(a[0] + a[3]);
-    if (!(r0 > SHI_BLACK && shi_is_real(g, u, a)))
-        return 0;
     const float f = a[0] * a[0] + a[3] * a[3] + a[5] * a[5] + 2.0f * (a[1] * a[1] + a[2] * a[2] + a[4] * a[4]);
+    if (!(r0 > SHI_BLACK && shi_is_real(g, u, a, f)))
+        return 0;
     out->model = f <= 0.125f ? SHI_CLOSURE_L2 : SHI_CLOSURE_L2_BOUNDED;
     out->scale = w;
     shi_set3(2.0f * u[0], 2.0f * u[1], 2.0f * u[2], out->r1);
@@ -1259,7 +1317,7 @@ SHI_FUNCTION float sh_ambient_floor(const float *c) {
     const double base = 3.0 * q.value[0], total = b[0] + b[1] + b[2], width = sqrt(base * base + 4.0 * total);
     const double enough = 5e-8 * (fabs(q.mean) + width);
     const double gap = total > 0.0 ? (b[1] * g[1] + b[2] * g[2]) / total : 0.0, sum = gap - base, product = total + base * gap;
-    double left = product > 0.0 ? 2.0 * product / (sum + sqrt(sum * sum + 4.0 * product)) : 0.0;
+    double left = product <= 0.0 ? 0.0 : 2.0 * product / (sum + sqrt(sum * sum + 4.0 * product));
     double right = total > 0.0 ? 2.0 * total / (width - base) : 0.0;
     for (int step = 0; step < 30 && right > enough; step++) {
         const double probe = left + enough, lack = shi_secular(base, b, g, probe, &low1, &low2);
@@ -1274,19 +1332,50 @@ SHI_FUNCTION float sh_ambient_floor(const float *c) {
     return (float)(q.mean + base - left);
 }
 
+/* Whether symmetric [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]] is positive definite: elimination without pivoting, which such a matrix
+ * does not need. */
+SHI_INLINE int shi_positive_definite(double xx, double xy, double xz, double yy, double yz, double zz) {
+    const double inverse = 1.0 / xx, f = inverse * xy, g = inverse * xz;
+    yy -= f * xy;
+    yz -= f * xz;
+    zz -= g * xz;
+    return xx > 0.0 && yy > 0.0 && zz - yz / yy * yz > 0.0;
+}
+
+/* Whether light that is nowhere negative has these coefficients, but for `slack` R0: |R1| <= R0, and the ambient floor is not negative,
+ * that is, what eliminating R0 from [[R0, R1'], [R1, R2 + I/3 R0]] leaves is positive definite. */
+SHI_FUNCTION int shi_realizable(int order, const float *c, double slack) {
+    const double r0 = (double)c[SH_R0] * (1.0 + slack);
+    if (order == SH_L0 || !(r0 >= 0.0))
+        return r0 >= 0.0;
+    const double x = (double)c[SH_X], y = (double)c[SH_Y], z = (double)c[SH_Z];
+    if (order == SH_L1)
+        return x * x + y * y + z * z <= r0 * r0;
+    const double xx = (double)c[SH_XX], xy = (double)c[SH_XY], xz = (double)c[SH_XZ], yy = (double)c[SH_YY], yz = (double)c[SH_YZ];
+    if (r0 > 0.0) {
+        const double third = r0 * (1.0 / 3.0), inverse = 1.0 / r0, u = inverse * x, v = inverse * y, w = inverse * z;
+        return shi_positive_definite(xx + third - u * x, xy - u * y, xz - u * z, yy + third - v * y, yz - v * z, third - xx - yy - w * z);
+    }
+    return x == 0.0 && y == 0.0 && z == 0.0 && xx == 0.0 && xy == 0.0 && xz == 0.0 && yy == 0.0 && yz == 0.0;
+}
+
 SHI_INLINE int sh_is_realizable(int order, const float *c) {
-    const float r0 = c[SH_R0], slack = -1e-6f * r0;
-    float d[3];
-    if (!(r0 >= 0.0f))
-        return 0;
-    return order == SH_L0 || (order == SH_L1 ? r0 - sh_average_direction(c, d) : sh_ambient_floor(c)) >= slack;
+    return shi_realizable(order, c, 1e-6);
+}
+
+/* Not the macro INFINITY: clang warns of it under -ffast-math. */
+SHI_INLINE float shi_infinity(void) {
+    const uint32_t bits = 0x7f800000u;
+    float a;
+    memcpy(&a, &bits, sizeof a);
+    return a;
 }
 
 /* Strength s in [0, 1], none to all, as the parameter of a family. */
 SHI_INLINE float shi_window_parameter(sh_window window, double s) {
     if (window == SH_WINDOW_LAPLACIAN)
-        return s < 1.0 ? (float)(s / (1.0 - s)) : INFINITY;
-    return s > 0.0 ? (float)(1.0 / s) : INFINITY;
+        return s < 1.0 ? (float)(s / (1.0 - s)) : shi_infinity();
+    return s > 0.0 ? (float)(1.0 / s) : shi_infinity();
 }
 
 SHI_INLINE void shi_window_zonal(sh_window window, float parameter, float zonal[3]) {
@@ -1297,27 +1386,55 @@ SHI_INLINE void shi_window_zonal(sh_window window, float parameter, float zonal[
     }
 }
 
-/* Whether a window of strength s leaves a channel negative somewhere, by more than 4 ulp of R0. */
-SHI_FUNCTION int shi_rings(const shi_quadric *q, sh_window window, double s) {
+/* R0 + 3 z1 R1.n + 15/2 z2 n'R2 n under a window of strength s, at one n: at[0] + z1 at[1] + z2 at[2]. */
+SHI_FUNCTION double shi_windowed(const double at[3], sh_window window, double s) {
     float zonal[3];
-    double x[3];
     shi_window_zonal(window, shi_window_parameter(window, s), zonal);
-    return shi_quadric_min(q, 3.0 * (double)zonal[1], 7.5 * (double)zonal[2], x) < -q->mean / 4194304.0; /* 2^22 */
+    return at[0] + at[1] * (double)zonal[1] + at[2] * (double)zonal[2];
 }
 
-/* The weakest strength from s on that stops a channel from ringing, to 1e-4 of itself: all bands but R0 are gone at 1. */
-SHI_FUNCTION double shi_strength_needed(const shi_quadric *q, sh_window window, double s) {
-    double strong = 1.0;
-    if (!(q->mean >= 0.0) || !shi_rings(q, window, s))
-        return s;
-    for (int step = 0; step < 40 && strong - s > 1e-4 * strong; step++) {
-        const double middle = 0.5 * (s + strong);
-        if (shi_rings(q, window, middle))
-            s = middle;
-        else
+/* The strength above s from which on shi_windowed is not negative, as it is at s; its parameter is within 2e-5. There is one: z1 falls
+ * to 0 as s rises to 1, where at[0] >= 0 is left, and z2 is a convex function of z1 in each family, so that the sum is convex or
+ * concave in z1 and crosses 0 once. By regula falsi; an end that stays twice counts half ("Illinois"). */
+SHI_FUNCTION double shi_strength_where(const double at[3], sh_window window, double s) {
+    double weak = s, strong = 1.0, below = shi_windowed(at, window, s), above = at[0];
+    for (int step = 0, stayed = 0; step < 60 && strong - weak > 2e-5 * strong * (1.0 - strong); step++) {
+        const double secant = (weak * above - strong * below) / (above - below), least = 1e-5 * strong * (1.0 - strong);
+        const double middle = secant < weak + least ? weak + least : secant > strong - least ? strong - least : secant;
+        const double value = shi_windowed(at, window, middle);
+        if (value < 0.0) {
+            weak = middle;
+            below = value;
+            above *= stayed > 0 ? 0.5 : 1.0;
+            stayed = 1;
+        } else {
             strong = middle;
+            above = value;
+            below *= stayed < 0 ? 0.5 : 1.0;
+            stayed = -1;
+        }
     }
     return strong;
+}
+
+/* The weakest strength from s on that leaves a channel nowhere negative, by more than 4 ulp of R0. Where a strength leaves a negative
+ * minimum, all up to the one that mends this direction do: no weaker one is passed over. */
+SHI_FUNCTION double shi_strength_needed(const shi_quadric *q, sh_window window, double s) {
+    if (!(q->mean >= 0.0))
+        return s;
+    for (int step = 0; step < 40; step++) {
+        double x[3], at[3] = { q->mean, 0.0, 0.0 };
+        float zonal[3];
+        shi_window_zonal(window, shi_window_parameter(window, s), zonal);
+        if (!(shi_quadric_min(q, 3.0 * (double)zonal[1], 7.5 * (double)zonal[2], x) < -q->mean / 4194304.0)) /* 2^22 */
+            return s;
+        for (int i = 0; i < 3; i++) {
+            at[1] += 3.0 * q->linear[i] * x[i];
+            at[2] += 7.5 * q->value[i] * x[i] * x[i];
+        }
+        s = shi_strength_where(at, window, s);
+    }
+    return 1.0;
 }
 
 /* A stronger window can bring back the ringing of a channel that an earlier pass had passed, since bands fade at different rates; a
@@ -1416,8 +1533,9 @@ SHI_INLINE int sh_skip_light(float value, float *budget) {
  * square. .8 covers the texels that are wider at one end. The widest sides are pi / height and 2 / width. */
 SHI_INLINE int shi_size_for(int order, double side, float tolerance) {
     const double slope = order == SH_L0 ? 0.0 : order == SH_L1 ? 2.0 : 3.402, needed = 0.8 * slope * side;
-    int size = 1;
-    while (size < 1 << 24 && needed > (double)tolerance * size)
+    const int most = 1 << 24;
+    int size = needed <= (double)tolerance * most ? 1 : most; /* NaN asks for the most */
+    while (size < most && needed > (double)tolerance * size)
         size *= 2;
     return size;
 }
@@ -1702,29 +1820,36 @@ SHI_FUNCTION void shi_ggx_integrals(double q, double rest, double J[3]) {
 SHI_FUNCTION void sh_zonal_ggx(float alpha, float zonal[3]) {
     const double a = (double)shi_clamp(alpha, 0.0f, 1.0f), aa = a * a;
     double J[3] = { 1.0, 1.0, 1.0 };
-    if (a > 1e-9)
+    if (!(a <= 1e-9)) /* NaN: NaN */
         shi_ggx_integrals((1.0 - aa) / (1.0 + aa), 2.0 * aa / (1.0 + aa), J);
     shi_set3(1.0f, (float)(J[1] / J[0]), (float)(1.5 * J[2] / J[0] - 0.5), zonal);
 }
 
 /* ---- Lights --------------------------------------------------------------------------------------------------------------------- */
 
+/* Two statements, which only compilers that fuse vectors' sums as well make one: L0 and L1, whose sets are added to in scalars, are the
+ * first of L2's to the bit. */
+SHI_INLINE void shi_add_scaled(float value, float lobe, float *c) {
+    const float product = value * lobe;
+    *c += product;
+}
+
 /* Adds value[k] * lobe to channel k. Written out, for compilers that do not unroll. */
 SHI_INLINE void shi_add_lobe(int order, int channels, const float *lobe, const float *value, float *c) {
     for (int k = 0; k < channels; k++, c += SH_COUNT(order)) {
         const float v = value[k];
-        c[SH_R0] += v * lobe[SH_R0];
+        shi_add_scaled(v, lobe[SH_R0], c + SH_R0);
         if (order >= SH_L1) {
-            c[SH_X] += v * lobe[SH_X];
-            c[SH_Y] += v * lobe[SH_Y];
-            c[SH_Z] += v * lobe[SH_Z];
+            shi_add_scaled(v, lobe[SH_X], c + SH_X);
+            shi_add_scaled(v, lobe[SH_Y], c + SH_Y);
+            shi_add_scaled(v, lobe[SH_Z], c + SH_Z);
         }
         if (order >= SH_L2) {
-            c[SH_XX] += v * lobe[SH_XX];
-            c[SH_XY] += v * lobe[SH_XY];
-            c[SH_XZ] += v * lobe[SH_XZ];
-            c[SH_YY] += v * lobe[SH_YY];
-            c[SH_YZ] += v * lobe[SH_YZ];
+            shi_add_scaled(v, lobe[SH_XX], c + SH_XX);
+            shi_add_scaled(v, lobe[SH_XY], c + SH_XY);
+            shi_add_scaled(v, lobe[SH_XZ], c + SH_XZ);
+            shi_add_scaled(v, lobe[SH_YY], c + SH_YY);
+            shi_add_scaled(v, lobe[SH_YZ], c + SH_YZ);
         }
     }
 }
@@ -1806,10 +1931,6 @@ SHI_FUNCTION void sh_add_vmf(int order, int channels, const float dir[3], float 
     shi_add_zonal(order, channels, zonal, dir, value, c);
 }
 
-SHI_INLINE double shi_dot(const double a[3], const double b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* out = a + t b */
 SHI_INLINE void shi_along(const double a[3], double t, const double b[3], double out[3]) {
     for (int i = 0; i < 3; i++)
@@ -1831,7 +1952,7 @@ SHI_FUNCTION void shi_add_integral(int order, int channels, const double integra
 
 /* integral = solid_angle * basis(p / |p|): a light too small to have a shape. */
 SHI_FUNCTION void shi_point_integral(const double p[3], double solid_angle, double integral[9]) {
-    const double square = shi_dot(p, p), inverse = square > 0.0 ? 1.0 / sqrt(square) : 0.0;
+    const double square = shi_dot3d(p, p), inverse = square > 0.0 ? 1.0 / sqrt(square) : 0.0;
     const double x = p[0] * inverse, y = p[1] * inverse, z = p[2] * inverse, third = square > 0.0 ? 1.0 / 3.0 : 0.0;
     const double basis[9] = { 1.0, x, y, z, x * x - third, x * y, x * z, y * y - third, y * z };
     for (int i = 0; i < 9; i++)
@@ -1849,13 +1970,14 @@ SHI_INLINE void shi_outline_add(const double f[3], const double n[3], const doub
     integral[SH_YZ] += (n[1] * g[2] + n[2] * g[1]) / 6.0;
 }
 
-/* The great arc from a to b: its inward normal n is constant, f = angle n, g = integral of u. From differences of the vertices, so
- * that a small light far away keeps its digits. */
+/* The great arc from a to b: its inward normal n is constant, f = angle n, g = integral of u. n = a x b from the difference of the
+ * vertices and the nearer one, so that neither a small light far away nor one with a far vertex loses its digits. */
 SHI_FUNCTION void shi_edge_add(const double a[3], const double b[3], double integral[9]) {
     double edge[3], n[3], f[3], g[3], chord[3];
+    const double dot = shi_dot3d(a, b), la = sqrt(shi_dot3d(a, a)), lb = sqrt(shi_dot3d(b, b));
     shi_along(b, -1.0, a, edge);
-    shi_cross(a, edge, n);
-    const double cross = sqrt(shi_dot(n, n)), dot = shi_dot(a, b), la = sqrt(shi_dot(a, a)), lb = sqrt(shi_dot(b, b));
+    shi_cross(la < lb ? a : b, edge, n);
+    const double cross = sqrt(shi_dot3d(n, n));
     if (!(cross > 0.0))
         return;
     const double angle = atan2(cross, dot), half_tangent = cross / (la * lb + dot);
@@ -1876,29 +1998,80 @@ SHI_FUNCTION double shi_triangle_angle(const double a[3], const double b[3], con
     shi_along(b, -1.0, a, ab);
     shi_along(c, -1.0, a, ac);
     shi_cross(ab, ac, normal);
-    const double la = sqrt(shi_dot(a, a)), lb = sqrt(shi_dot(b, b)), lc = sqrt(shi_dot(c, c));
-    const double rest = la * lb * lc + shi_dot(a, b) * lc + shi_dot(b, c) * la + shi_dot(c, a) * lb;
-    return 2.0 * atan2(shi_dot(a, normal), rest);
+    const double la = sqrt(shi_dot3d(a, a)), lb = sqrt(shi_dot3d(b, b)), lc = sqrt(shi_dot3d(c, c));
+    const double rest = la * lb * lc + shi_dot3d(a, b) * lc + shi_dot3d(b, c) * la + shi_dot3d(c, a) * lb;
+    return 2.0 * atan2(shi_dot3d(a, normal), rest);
 }
 
-SHI_FUNCTION void shi_polygon_integral(const float *vertices, size_t count, double integral[9]) {
-    double first[3], last[3], middle[3] = { 0, 0, 0 }, solid_angle = 0.0, extent = 0.0;
+/* Vertices are relative to `center`. */
+SHI_INLINE void shi_vertex(const float center[3], const float *vertex, double out[3]) {
+    for (int i = 0; i < 3; i++)
+        out[i] = (double)center[i] + (double)vertex[i];
+}
+
+/* The unit normal of a polygon, away from the receiver, whose height over its plane it returns; 0 and -1 if it has no area. */
+SHI_FUNCTION double shi_polygon_axis(const float center[3], const float *vertices, size_t count, double axis[3]) {
+    double nearest[3] = { 0, 0, 0 }, from[3] = { 0, 0, 0 }, to[3], p[3], least = -1.0;
+    axis[0] = axis[1] = axis[2] = 0.0;
+    for (size_t i = 0; i < count; i++) {
+        shi_vertex(center, vertices + 3 * i, p);
+        if (least < 0.0 || shi_dot3d(p, p) < least) {
+            least = shi_dot3d(p, p);
+            memcpy(nearest, p, sizeof nearest);
+        }
+    }
+    for (size_t i = 0; i <= count; i++) {
+        double area[3];
+        shi_vertex(center, vertices + 3 * (i % count), p);
+        shi_along(p, -1.0, nearest, to);
+        shi_cross(from, to, area);
+        shi_along(axis, i > 0 ? 1.0 : 0.0, area, axis);
+        memcpy(from, to, sizeof from);
+    }
+    const double length = sqrt(shi_dot3d(axis, axis)), height = shi_dot3d(axis, nearest);
+    if (!(length > 0.0))
+        return -1.0;
+    for (int i = 0; i < 3; i++)
+        axis[i] /= height < 0.0 ? -length : length;
+    return fabs(height) / length;
+}
+
+/* Signed solid angle of a polygon as the sum over its edges of that of a triangle with the axis: exact to rounding for a receiver
+ * in the plane too, where a fan of triangles has 0 / 0 on its diagonals. */
+SHI_FUNCTION double shi_polygon_angle(const float center[3], const float *vertices, size_t count, const double axis[3]) {
+    double last[3], p[3], normal[3], sum = 0.0;
+    shi_vertex(center, vertices + 3 * (count - 1), last);
+    for (size_t i = 0; i < count; i++) {
+        shi_vertex(center, vertices + 3 * i, p);
+        shi_cross(last, p, normal);
+        const double a = sqrt(shi_dot3d(last, last)), b = sqrt(shi_dot3d(p, p));
+        sum += 2.0 * atan2(shi_dot3d(axis, normal), a * b + shi_dot3d(axis, last) * b + shi_dot3d(axis, p) * a + shi_dot3d(last, p));
+        memcpy(last, p, sizeof last);
+    }
+    return sum;
+}
+
+SHI_FUNCTION void shi_polygon_integral(const float center[3], const float *vertices, size_t count, double integral[9]) {
+    double first[3], last[3], axis[3], middle[3] = { 0, 0, 0 }, solid_angle = 0.0, extent = 0.0;
     memset(integral, 0, 9 * sizeof *integral);
-    shi_widen(vertices, first);
-    shi_widen(vertices + 3 * (count - 1), last);
+    shi_vertex(center, vertices, first);
+    shi_vertex(center, vertices + 3 * (count - 1), last);
     for (size_t i = 0; i < count; i++) {
         double p[3], from_first[3];
-        shi_widen(vertices + 3 * i, p);
+        shi_vertex(center, vertices + 3 * i, p);
         shi_edge_add(last, p, integral);
         if (i >= 2)
             solid_angle += shi_triangle_angle(first, last, p);
         shi_along(p, -1.0, first, from_first);
-        extent = fmax(extent, shi_dot(from_first, from_first));
+        extent = fmax(extent, shi_dot3d(from_first, from_first));
         shi_along(middle, 1.0 / (double)count, p, middle);
         memcpy(last, p, sizeof last);
     }
+    const double height = shi_polygon_axis(center, vertices, count, axis);
+    if (height >= 0.0 && height * height < 1e-12 * extent)
+        solid_angle = shi_polygon_angle(center, vertices, count, axis);
     /* The sums over edges cancel to the square of the light's angular size; at 1e-8, half of a double's digits are left. */
-    if (extent < 1e-16 * shi_dot(first, first))
+    if (extent < 1e-16 * shi_dot3d(first, first))
         shi_point_integral(middle, solid_angle, integral);
     integral[SH_R0] = solid_angle;
     if (solid_angle < 0.0)
@@ -1907,41 +2080,34 @@ SHI_FUNCTION void shi_polygon_integral(const float *vertices, size_t count, doub
 }
 
 SHI_FUNCTION int sh_add_polygon(int order, int channels, const float *vertices, size_t count, const float *radiance, float *c) {
+    const float receiver[3] = { 0.0f, 0.0f, 0.0f };
     double integral[9];
     if (!shi_order_ok(order) || channels < 1 || !vertices || count < 3 || !radiance || !c)
         return SH_ERROR_ARGUMENT;
-    shi_polygon_integral(vertices, count, integral);
+    shi_polygon_integral(receiver, vertices, count, integral);
     shi_add_integral(order, channels, integral, radiance, c);
     return SH_OK;
 }
 
+/* Corners as floats would be off by 6e-8 of their distance: too much where they are near to each other. */
 SHI_FUNCTION void sh_add_rectangle(int order, int channels, const float center[3], const float half_u[3], const float half_v[3],
                                    const float *radiance, float *c) {
     float corner[4][3];
+    double integral[9];
     for (int i = 0; i < 3; i++) {
-        corner[0][i] = center[i] - half_u[i] - half_v[i];
-        corner[1][i] = center[i] + half_u[i] - half_v[i];
-        corner[2][i] = center[i] + half_u[i] + half_v[i];
-        corner[3][i] = center[i] - half_u[i] + half_v[i];
+        corner[0][i] = -half_u[i] - half_v[i];
+        corner[1][i] = half_u[i] - half_v[i];
+        corner[2][i] = half_u[i] + half_v[i];
+        corner[3][i] = half_v[i] - half_u[i];
     }
-    sh_add_polygon(order, channels, corner[0], 4, radiance, c);
-}
-
-/* Two unit vectors that make a right-handed frame with unit vector n. Duff et al., "Building an Orthonormal Basis, Revisited", 2017. */
-SHI_FUNCTION void shi_frame(const double n[3], double u[3], double v[3]) {
-    const double sign = n[2] < 0.0 ? -1.0 : 1.0, a = -1.0 / (sign + n[2]), b = n[0] * n[1] * a;
-    u[0] = 1.0 + sign * n[0] * n[0] * a;
-    u[1] = sign * b;
-    u[2] = -sign * n[0];
-    v[0] = b;
-    v[1] = sign + n[1] * n[1] * a;
-    v[2] = -n[1];
+    shi_polygon_integral(center, corner[0], 4, integral);
+    shi_add_integral(order, channels, integral, radiance, c);
 }
 
 /* Points on the rim for an error of 1e-8. The integrand's nearest pole is at azimuth + i y, where |p|^2 = 0:
  * cosh y - 1 = gap^2 / (2 radius * distance from the axis). */
 SHI_FUNCTION int shi_rim_points(const double center[3], const double axis[3], double radius) {
-    const double height = shi_dot(center, axis), off = sqrt(fmax(0.0, shi_dot(center, center) - height * height));
+    const double height = shi_dot3d(center, axis), off = sqrt(fmax(0.0, shi_dot3d(center, center) - height * height));
     const double gap = (off - radius) * (off - radius) + height * height, span = 2.0 * radius * off;
     const double t = gap < 100.0 * span ? gap / span : 100.0, y = log1p(t + sqrt(t * (t + 2.0)));
     return y > 0.02 ? 16 + (int)(20.0 / y) : 1016;
@@ -1953,7 +2119,7 @@ SHI_FUNCTION void shi_disk_integral(const double center[3], const double axis[3]
     const int points = shi_rim_points(center, axis, radius);
     const double step = 2.0 * SHI_PI / points, cos_step = cos(step), sin_step = sin(step);
     double u[3], v[3], cosine = 1.0, sine = 0.0;
-    shi_frame(axis, u, v);
+    shi_complete_frame(axis, u, v);
     memset(integral, 0, 9 * sizeof *integral);
     for (int i = 0; i < points; i++) {
         double p[3], slope[3], f[3], g[3];
@@ -1962,12 +2128,12 @@ SHI_FUNCTION void shi_disk_integral(const double center[3], const double axis[3]
             slope[k] = radius * step * (cosine * v[k] - sine * u[k]);
         }
         shi_cross(p, slope, f);
-        const double square = shi_dot(p, p), inverse = square > 0.0 ? 1.0 / square : 0.0, length = sqrt(inverse);
+        const double square = shi_dot3d(p, p), inverse = square > 0.0 ? 1.0 / square : 0.0, length = sqrt(inverse);
         for (int k = 0; k < 3; k++) {
             f[k] *= inverse;
             g[k] = p[k] * length;
         }
-        integral[SH_R0] += shi_dot(axis, f) / (1.0 + shi_dot(axis, g));
+        integral[SH_R0] += shi_dot3d(axis, f) / (1.0 + shi_dot3d(axis, g));
         shi_outline_add(f, f, g, integral);
         const double next = cosine * cos_step - sine * sin_step;
         sine = sine * cos_step + cosine * sin_step;
@@ -1979,16 +2145,16 @@ SHI_FUNCTION void sh_add_disk(int order, int channels, const float center[3], co
                               float *c) {
     double p[3], axis[3], integral[9];
     const double r = (double)radius;
-    if (!(r > 0.0))
+    if (r <= 0.0)
         return;
     shi_widen(center, p);
     shi_widen(normal, axis);
-    if (shi_dot(p, axis) < 0.0)
+    if (shi_dot3d(p, axis) < 0.0)
         for (int i = 0; i < 3; i++)
             axis[i] = -axis[i];
-    const double square = shi_dot(p, p);
+    const double square = shi_dot3d(p, p);
     if (r * r < 1e-16 * square)
-        shi_point_integral(p, SHI_PI * r * r / square * shi_dot(p, axis) / sqrt(square), integral);
+        shi_point_integral(p, SHI_PI * r * r / square * shi_dot3d(p, axis) / sqrt(square), integral);
     else
         shi_disk_integral(p, axis, r, integral);
     shi_add_integral(order, channels, integral, radiance, c);
@@ -2001,18 +2167,18 @@ SHI_FUNCTION void sh_add_segment(int order, int channels, const float a[3], cons
     shi_widen(a, from);
     shi_widen(b, to);
     shi_along(to, -1.0, from, t);
-    const double length = sqrt(shi_dot(t, t));
-    if (!(length > 0.0))
+    const double length = sqrt(shi_dot3d(t, t));
+    if (length <= 0.0)
         return;
     for (int i = 0; i < 3; i++)
         t[i] /= length;
-    const double a0 = shi_dot(from, t), b0 = shi_dot(to, t);
+    const double a0 = shi_dot3d(from, t), b0 = shi_dot3d(to, t);
     if (fabs(a0) < fabs(b0)) /* the nearer end has the more accurate foot of the perpendicular */
         shi_along(from, -a0, t, e);
     else
         shi_along(to, -b0, t, e);
-    const double h = sqrt(shi_dot(e, e)), la = sqrt(a0 * a0 + h * h), lb = sqrt(b0 * b0 + h * h);
-    if (!(h > 0.0 && width > 0.0f))
+    const double h = sqrt(shi_dot3d(e, e)), la = sqrt(a0 * a0 + h * h), lb = sqrt(b0 * b0 + h * h);
+    if (h <= 0.0 || width <= 0.0f)
         return;
     for (int i = 0; i < 3; i++)
         e[i] /= h;
@@ -2038,8 +2204,8 @@ SHI_FUNCTION size_t sh_add_spheres(int order, int channels, const float *spheres
         double p[3], most = 0.0;
         shi_widen(spheres, p);
         for (int k = 0; k < channels; k++)
-            most = fmax(most, fabs((double)radiance[k]));
-        const double square = shi_dot(p, p), rr = (double)spheres[3] * (double)spheres[3];
+            most = fabs((double)radiance[k]) <= most || most != most ? most : fabs((double)radiance[k]); /* NaN stays */
+        const double square = shi_dot3d(p, p), rr = (double)spheres[3] * (double)spheres[3];
         const double bound = rr < square ? 17.0 / 16.0 * most * rr / square : most;
         if (bound * (double)(count - i) <= (double)tolerance - skipped) { /* its share of what is left, for it and all that follow */
             skipped += bound;
@@ -2175,125 +2341,132 @@ SHI_FUNCTION void sh_pack_shader(const float *c, float out[28]) {
     out[27] = 1.0f;
 }
 
-/* Whether symmetric m is positive definite: elimination without pivoting, which such a matrix does not need. */
-SHI_FUNCTION int shi_positive_definite(double m[4][4]) {
-    for (int k = 0; k < 4; k++) {
-        if (!(m[k][k] > 0.0))
-            return 0;
-        const double inverse = 1.0 / m[k][k];
-        for (int i = k + 1; i < 4; i++) {
-            const double factor = inverse * m[i][k];
-            for (int j = k + 1; j < 4; j++)
-                m[i][j] -= factor * m[k][j];
-        }
-    }
-    return 1;
-}
-
-/* Whether one channel has moments of a light that is not negative: |R1| <= R0 at L1; at L2, the moment matrix
- * [[R0, R1'], [R1, R2 + I/3 R0]], with slack * R0 added to its diagonal, is positive definite. */
-SHI_FUNCTION int shi_realizable(int order, const float *c, double slack) {
-    const double r0 = (double)c[SH_R0], more = slack * r0;
-    if (!(r0 > 0.0) || order == SH_L0)
-        return r0 > 0.0;
-    const double x = (double)c[SH_X], y = (double)c[SH_Y], z = (double)c[SH_Z];
-    if (order == SH_L1)
-        return sqrt(x * x + y * y + z * z) <= r0 + more;
-    const double xx = (double)c[SH_XX], yy = (double)c[SH_YY], zz = -(xx + yy), third = r0 / 3.0 + more;
-    const double xy = (double)c[SH_XY], xz = (double)c[SH_XZ], yz = (double)c[SH_YZ];
-    double m[4][4] = { { r0 + more, x, y, z }, { x, xx + third, xy, xz }, { y, xy, yy + third, yz }, { z, xz, yz, zz + third } };
-    return shi_positive_definite(m);
-}
-
 /* What counts as realizable: before packing, to the rounding of floats; after, to that of the elimination. */
 #define SHI_SLACK_BEFORE 2e-6
 #define SHI_SLACK_AFTER 1e-9
 
-/* To the nearest half; |x| < 2^16. Rounds ties of normal halves to even. */
-SHI_FUNCTION uint16_t shi_to_half(float x) {
-    uint32_t bits;
+/* To the nearest half, ties to even; |x| < 2^16. */
+SHI_INLINE uint16_t shi_to_half(float x) {
+    const float shifted = fabsf(x) + 0.5f; /* whose bits count steps of 2^-24, that of subnormal halves */
+    uint32_t bits, steps;
     memcpy(&bits, &x, sizeof bits);
+    memcpy(&steps, &shifted, sizeof steps);
     const uint32_t magnitude = bits & 0x7fffffffu, sign = bits >> 31 << 15;
     if (magnitude < 0x38800000u) /* 2^-14 */
-        return (uint16_t)(sign | (uint32_t)(fabsf(x) * 16777216.0f + 0.5f));
+        return (uint16_t)(sign | (steps - 0x3f000000u));
     return (uint16_t)(sign | (magnitude - 0x38000000u + 0xfffu + (magnitude >> 13 & 1u)) >> 13);
 }
 
-/* Finite halves only. */
-SHI_FUNCTION float shi_from_half(uint16_t h) {
-    const uint32_t magnitude = h & 0x7fffu, bits = (magnitude << 13) + 0x38000000u;
+/* Finite halves only. No branch on the sign, which is as good as random. */
+SHI_INLINE float shi_from_half(uint16_t h) {
+    const uint32_t magnitude = h & 0x7fffu, sign = (uint32_t)(h & 0x8000u) << 16;
+    uint32_t bits = (magnitude << 13) + 0x38000000u;
     float x;
+    if (magnitude < 0x0400u) {
+        x = (float)(int)magnitude / 16777216.0f;
+        memcpy(&bits, &x, sizeof bits);
+    }
+    bits |= sign;
     memcpy(&x, &bits, sizeof x);
-    if (magnitude < 0x0400u)
-        x = (float)magnitude / 16777216.0f;
-    return h & 0x8000u ? -x : x;
+    return x;
 }
 
-SHI_FUNCTION void shi_halves_to_floats(int count, const uint16_t *in, double scale, float *out) {
-    for (int i = 0; i < count; i++)
-        out[i] = (float)(scale * (double)shi_from_half(in[i]));
+/* 2^exponent, for -1022 <= exponent <= 1023. */
+SHI_INLINE double shi_power_of_two(int exponent) {
+    const uint64_t bits = (uint64_t)(1023 + exponent) << 52;
+    double power;
+    memcpy(&power, &bits, sizeof power);
+    return power;
+}
+
+/* The exponent e of 2^e <= x < 2^(e + 1), for a positive float. */
+SHI_INLINE int shi_exponent(float x) {
+    const double wide = (double)x; /* is never subnormal */
+    uint64_t bits;
+    memcpy(&bits, &wide, sizeof bits);
+    return (int)(bits >> 52) - 1023;
+}
+
+/* Rounds R0 up until light can have the set, if it could have c, in 8 steps at most. */
+SHI_FUNCTION void shi_raise_half(int order, const float *c, uint16_t *half) {
+    float decoded[9];
+    for (int i = 0; i < SH_COUNT(order); i++)
+        decoded[i] = shi_from_half(half[i]);
+    if (shi_realizable(order, decoded, SHI_SLACK_AFTER) || !shi_realizable(order, c, SHI_SLACK_BEFORE))
+        return;
+    for (int step = 0; step < 8 && !shi_realizable(order, decoded, SHI_SLACK_AFTER); step++)
+        decoded[SH_R0] = shi_from_half(++half[SH_R0]);
+}
+
+/* By bits that the compiler cannot trace to a float: under -ffast-math it may hold that every float is finite (clang 19 does). */
+SHI_INLINE int shi_is_finite(const float *a) {
+    uint32_t bits;
+    memcpy(&bits, a, sizeof bits);
+    volatile uint32_t untraced = bits;
+    return (untraced & 0x7f800000u) != 0x7f800000u;
 }
 
 SHI_FUNCTION void sh_pack_half(int order, int channels, const float *c, uint16_t *out) {
     const int count = SH_COUNT(order);
-    int exponent = 15;
     float most = 0.0f;
     for (int i = 0; i < channels * count; i++)
-        most = fabsf(c[i]) > most ? fabsf(c[i]) : most;
-    if (most > 0.0f)
-        frexpf(most, &exponent);
-    exponent -= 15;
-    const double scale = ldexp(1.0, -exponent);
-    for (int k = 0; k < channels; k++) {
-        uint16_t *half = out + k * count;
-        float decoded[9];
-        for (int i = 0; i < count; i++)
-            half[i] = shi_to_half((float)(scale * (double)c[k * count + i]));
-        shi_halves_to_floats(count, half, 1.0, decoded);
-        if (shi_realizable(order, decoded, SHI_SLACK_AFTER) || !shi_realizable(order, c + k * count, SHI_SLACK_BEFORE))
-            continue;
-        for (int step = 0; step < 8 && !shi_realizable(order, decoded, SHI_SLACK_AFTER); step++)
-            decoded[SH_R0] = shi_from_half(++half[SH_R0]);
-    }
+        most = shi_is_finite(c + i) && fabsf(c[i]) > most ? fabsf(c[i]) : most;
+    const int exponent = most > 0.0f ? shi_exponent(most) - 14 : 0;
+    const double scale = shi_power_of_two(-exponent);
+    for (int i = 0; i < channels * count; i++)
+        out[i] = shi_is_finite(c + i) ? shi_to_half((float)(scale * (double)c[i])) : 0;
+    for (int k = 0; k < channels; k++)
+        shi_raise_half(order, c + k * count, out + k * count);
     out[channels * count] = (uint16_t)exponent;
 }
 
 SHI_FUNCTION void sh_unpack_half(int order, int channels, const uint16_t *in, float *out) {
     const int count = channels * SH_COUNT(order), word = in[count];
-    shi_halves_to_floats(count, in, ldexp(1.0, word < 0x8000 ? word : word - 0x10000), out);
+    const double scale = shi_power_of_two(word < 0x8000 ? word : word - 0x10000);
+    for (int i = 0; i < count; i++)
+        out[i] = (float)(scale * (double)shi_from_half(in[i]));
 }
 
-/* Ratios are coded as zero + scale * ratio, in [0, 2^bits - 1]. */
+/* Ratios are coded as zero + scale * ratio, in [0, 2^bits - 1]; step = 1 / scale. */
 typedef struct shi_ratio {
-    double zero, scale, least, most;
+    double zero, scale, step, least, most;
 } shi_ratio;
 
-SHI_FUNCTION shi_ratio shi_ratio_code(int i, int bits) {
-    const double top = (double)((1 << bits) - 1), middle = (double)(1 << (bits - 1));
-    const shi_ratio first = { middle, middle - 1.0, -1.0, 1.0 }, product = { middle, 2.0 * (middle - 1.0), -0.5, 0.5 };
-    const shi_ratio square = { top / 3.0, top, -1.0 / 3.0, 2.0 / 3.0 };
-    return i < SH_XX ? first : i == SH_XX || i == SH_YY ? square : product;
+/* Of coefficient i. Constants, once i and bits are. */
+SHI_INLINE shi_ratio shi_ratio_code(int i, int bits) {
+    const double top = (double)((1 << bits) - 1), middle = (double)(1 << (bits - 1)), third = 1.0 / 3.0;
+    const int square = i == SH_XX || i == SH_YY;
+    shi_ratio ratio;
+    ratio.most = i < SH_XX ? 1.0 : square ? 2.0 * third : 0.5;
+    ratio.least = square ? -third : -ratio.most;
+    ratio.zero = square ? third * top : middle;
+    ratio.scale = square ? top : (middle - 1.0) / ratio.most;
+    ratio.step = 1.0 / ratio.scale;
+    return ratio;
 }
 
-SHI_FUNCTION void shi_decode_ratios(int order, const uint16_t *code, int bits, float r0, float *out) {
+SHI_INLINE void shi_decode_ratios(int order, const uint16_t *code, int bits, float r0, float *out) {
+    const double unit = r0 > 0.0f ? (double)r0 : 0.0;
     out[SH_R0] = r0;
+    SHI_UNROLL
     for (int i = SH_X; i < SH_COUNT(order); i++) {
         const shi_ratio ratio = shi_ratio_code(i, bits);
-        out[i] = r0 > 0.0f ? (float)((double)r0 * ((code[i - 1] - ratio.zero) / ratio.scale)) : 0.0f;
+        out[i] = (float)(unit * (((double)code[i - 1] - ratio.zero) * ratio.step));
     }
 }
 
-SHI_FUNCTION void shi_encode_ratios(int order, const float *c, int bits, double shrink, uint16_t *code) {
+SHI_INLINE void shi_encode_ratios(int order, const float *c, int bits, double shrink, uint16_t *code) {
     const double inverse = c[SH_R0] > 0.0f ? shrink / (double)c[SH_R0] : 0.0;
+    SHI_UNROLL
     for (int i = SH_X; i < SH_COUNT(order); i++) {
         const shi_ratio ratio = shi_ratio_code(i, bits);
-        const double t = inverse * (double)c[i];
-        code[i - 1] = (uint16_t)(ratio.zero + ratio.scale * (!(t > ratio.least) ? ratio.least : t > ratio.most ? ratio.most : t) + 0.5);
+        const double t = inverse * (double)c[i], low = t > ratio.least ? t : ratio.least;
+        code[i - 1] = (uint16_t)(int)(ratio.zero + ratio.scale * (low < ratio.most ? low : ratio.most) + 0.5);
     }
 }
 
 /* Codes of one channel that decode to a realizable set if c is one. */
-SHI_FUNCTION void shi_pack_ratios(int order, const float *c, int bits, uint16_t *code) {
+SHI_INLINE void shi_pack_ratios(int order, const float *c, int bits, uint16_t *code) {
     float decoded[9];
     for (int step = 0; step < 64; step++) {
         shi_encode_ratios(order, c, bits, 1.0 - step / (2.0 * (1 << bits)), code);
@@ -2468,11 +2641,17 @@ SHI_FUNCTION int sh_fit_samples(int order, int channels, const float *x, const f
  * shi_m a mask of as many, shi_i of as many 32-bit integers. Loads and stores take any alignment. Only shi_madd may fuse.
  *   min, max     the second operand where one is NaN
  *   select       (m, a, b): a where m is set, b elsewhere
- *   iload16      16-bit words, zero-extended;  iload32  native 32-bit words
+ *   load8, store8  the first eight lanes, or all where there are fewer; loaded, the others are 0
+ *   load_half    halves, where SHI_HAS_HALF says that the target converts them; infinity and NaN stay what they are
+ *   iload16      16-bit words, sign-extended;  iload32  native 32-bit words
  *   repeat3      (a, part): every lane three times, in three vectors; part 0, 1 or 2 of them
  *   transpose4   4 x 4 transposes within each group of four lanes
  *   load4        four consecutive floats of each of SHI_LANES items, `stride` bytes apart: v[j] has float j of all items
- *   store4       the first n of v[0] ... v[3] to n consecutive floats of each item, writing nothing else */
+ *   store3       a, b, c to three consecutive floats of each item, writing nothing else
+ *   keep         the same value, in a register: GCC would rather load it again for each use, and loads are what the kernels wait for
+ *   hide         the same number, which the compiler cannot know: in a loop, it then multiplies a stride where it is needed, and does
+ *                not step dozens of pointers that do not fit into registers
+ *   prefetch     asks for two vectors' cache lines, which need not be readable */
 
 #if defined(SH_NO_SIMD)
 #undef SH_SIMD
@@ -2535,17 +2714,21 @@ SHI_FUNCTION int sh_fit_samples(int order, int channels, const float *x, const f
 #include <immintrin.h>
 #endif
 SHI_INLINE __m128 shi_load_four(const void *p) { return _mm_loadu_ps((const float *)p); }
-/* The first n <= 4 floats of a. */
-SHI_INLINE void shi_store_four(void *p, int n, __m128 a) {
-    const float first = _mm_cvtss_f32(a), third = _mm_cvtss_f32(_mm_movehl_ps(a, a));
-    if (n == 4)
-        _mm_storeu_ps((float *)p, a);
-    else if (n >= 2)
-        _mm_storel_pi((__m64 *)p, a);
-    if (n == 3)
-        memcpy((unsigned char *)p + 2 * sizeof third, &third, sizeof third);
-    else if (n == 1)
-        memcpy(p, &first, sizeof first);
+SHI_INLINE void shi_store_low(void *p, __m128 a) { _mm_storel_pi((__m64 *)p, a); }
+SHI_INLINE void shi_store_high(void *p, __m128 a) { _mm_storeh_pi((__m64 *)p, a); }
+/* a, b, c to three consecutive floats of each of four items: a and b as pairs, c alone. */
+SHI_INLINE void shi_store_threes(unsigned char *p, size_t stride, __m128 a, __m128 b, __m128 c) {
+    const __m128 ab = _mm_unpacklo_ps(a, b), ab_high = _mm_unpackhi_ps(a, b);
+    const float c0 = _mm_cvtss_f32(c), c1 = _mm_cvtss_f32(_mm_shuffle_ps(c, c, _MM_SHUFFLE(1, 1, 1, 1)));
+    const float c2 = _mm_cvtss_f32(_mm_movehl_ps(c, c)), c3 = _mm_cvtss_f32(_mm_shuffle_ps(c, c, _MM_SHUFFLE(3, 3, 3, 3)));
+    shi_store_low(p, ab);
+    memcpy(p + 8, &c0, sizeof c0);
+    shi_store_high(p + stride, ab);
+    memcpy(p + stride + 8, &c1, sizeof c1);
+    shi_store_low(p + 2 * stride, ab_high);
+    memcpy(p + 2 * stride + 8, &c2, sizeof c2);
+    shi_store_high(p + 3 * stride, ab_high);
+    memcpy(p + 3 * stride + 8, &c3, sizeof c3);
 }
 #endif
 
@@ -2561,6 +2744,10 @@ typedef __mmask16 shi_m;
 SHI_INLINE shi_v shi_splat(float a) { return _mm512_set1_ps(a); }
 SHI_INLINE shi_v shi_load(const void *p) { return _mm512_loadu_ps(p); }
 SHI_INLINE void shi_store(void *p, shi_v a) { _mm512_storeu_ps(p, a); }
+#define SHI_HAS_HALF 1
+SHI_INLINE shi_v shi_load_half(const void *p) { return _mm512_cvtph_ps(_mm256_loadu_si256((const __m256i *)p)); }
+SHI_INLINE shi_v shi_load8(const void *p) { return _mm512_zextps256_ps512(_mm256_loadu_ps((const float *)p)); }
+SHI_INLINE void shi_store8(void *p, shi_v a) { _mm256_storeu_ps((float *)p, _mm512_castps512_ps256(a)); }
 SHI_INLINE shi_v shi_add(shi_v a, shi_v b) { return _mm512_add_ps(a, b); }
 SHI_INLINE shi_v shi_sub(shi_v a, shi_v b) { return _mm512_sub_ps(a, b); }
 SHI_INLINE shi_v shi_mul(shi_v a, shi_v b) { return _mm512_mul_ps(a, b); }
@@ -2575,7 +2762,7 @@ SHI_INLINE shi_v shi_or(shi_v a, shi_v b) {
 }
 SHI_INLINE shi_m shi_less(shi_v a, shi_v b) { return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ); }
 SHI_INLINE shi_v shi_select(shi_m m, shi_v a, shi_v b) { return _mm512_mask_blend_ps(m, b, a); }
-SHI_INLINE shi_i shi_iload16(const void *p) { return _mm512_cvtepu16_epi32(_mm256_loadu_si256((const __m256i *)p)); }
+SHI_INLINE shi_i shi_iload16(const void *p) { return _mm512_cvtepi16_epi32(_mm256_loadu_si256((const __m256i *)p)); }
 SHI_INLINE shi_i shi_iload32(const void *p) { return _mm512_loadu_si512(p); }
 SHI_INLINE shi_i shi_iand(shi_i a, int b) { return _mm512_and_si512(a, _mm512_set1_epi32(b)); }
 SHI_INLINE shi_i shi_iadd(shi_i a, int b) { return _mm512_add_epi32(a, _mm512_set1_epi32(b)); }
@@ -2603,11 +2790,11 @@ SHI_INLINE shi_v shi_load_fours(const unsigned char *p, size_t stride) {
     v = _mm512_insertf32x4(v, shi_load_four(p + 2 * stride), 2);
     return _mm512_insertf32x4(v, shi_load_four(p + 3 * stride), 3);
 }
-SHI_INLINE void shi_store_fours(unsigned char *p, size_t stride, int n, shi_v v) {
-    shi_store_four(p, n, _mm512_castps512_ps128(v));
-    shi_store_four(p + stride, n, _mm512_extractf32x4_ps(v, 1));
-    shi_store_four(p + 2 * stride, n, _mm512_extractf32x4_ps(v, 2));
-    shi_store_four(p + 3 * stride, n, _mm512_extractf32x4_ps(v, 3));
+SHI_INLINE void shi_store3(unsigned char *p, size_t stride, shi_v a, shi_v b, shi_v c) {
+    shi_store_threes(p, stride, _mm512_castps512_ps128(a), _mm512_castps512_ps128(b), _mm512_castps512_ps128(c));
+    shi_store_threes(p + 4 * stride, stride, _mm512_extractf32x4_ps(a, 1), _mm512_extractf32x4_ps(b, 1), _mm512_extractf32x4_ps(c, 1));
+    shi_store_threes(p + 8 * stride, stride, _mm512_extractf32x4_ps(a, 2), _mm512_extractf32x4_ps(b, 2), _mm512_extractf32x4_ps(c, 2));
+    shi_store_threes(p + 12 * stride, stride, _mm512_extractf32x4_ps(a, 3), _mm512_extractf32x4_ps(b, 3), _mm512_extractf32x4_ps(c, 3));
 }
 
 #elif SH_SIMD == SH_SIMD_AVX2
@@ -2622,6 +2809,10 @@ typedef __m256 shi_m;
 SHI_INLINE shi_v shi_splat(float a) { return _mm256_set1_ps(a); }
 SHI_INLINE shi_v shi_load(const void *p) { return _mm256_loadu_ps((const float *)p); }
 SHI_INLINE void shi_store(void *p, shi_v a) { _mm256_storeu_ps((float *)p, a); }
+#if defined(__F16C__) || (defined(_MSC_VER) && !defined(__clang__)) /* every processor with AVX2 has it, but GCC wants -mf16c */
+#define SHI_HAS_HALF 1
+SHI_INLINE shi_v shi_load_half(const void *p) { return _mm256_cvtph_ps(_mm_loadu_si128((const __m128i *)p)); }
+#endif
 SHI_INLINE shi_v shi_add(shi_v a, shi_v b) { return _mm256_add_ps(a, b); }
 SHI_INLINE shi_v shi_sub(shi_v a, shi_v b) { return _mm256_sub_ps(a, b); }
 SHI_INLINE shi_v shi_mul(shi_v a, shi_v b) { return _mm256_mul_ps(a, b); }
@@ -2634,7 +2825,7 @@ SHI_INLINE shi_v shi_abs(shi_v a) { return _mm256_andnot_ps(_mm256_set1_ps(-0.0f
 SHI_INLINE shi_v shi_or(shi_v a, shi_v b) { return _mm256_or_ps(a, b); }
 SHI_INLINE shi_m shi_less(shi_v a, shi_v b) { return _mm256_cmp_ps(a, b, _CMP_LT_OQ); }
 SHI_INLINE shi_v shi_select(shi_m m, shi_v a, shi_v b) { return _mm256_blendv_ps(b, a, m); }
-SHI_INLINE shi_i shi_iload16(const void *p) { return _mm256_cvtepu16_epi32(_mm_loadu_si128((const __m128i *)p)); }
+SHI_INLINE shi_i shi_iload16(const void *p) { return _mm256_cvtepi16_epi32(_mm_loadu_si128((const __m128i *)p)); }
 SHI_INLINE shi_i shi_iload32(const void *p) { return _mm256_loadu_si256((const __m256i *)p); }
 SHI_INLINE shi_i shi_iand(shi_i a, int b) { return _mm256_and_si256(a, _mm256_set1_epi32(b)); }
 SHI_INLINE shi_i shi_iadd(shi_i a, int b) { return _mm256_add_epi32(a, _mm256_set1_epi32(b)); }
@@ -2658,9 +2849,9 @@ SHI_INLINE shi_v shi_repeat3(shi_v a, int part) {
 SHI_INLINE shi_v shi_load_fours(const unsigned char *p, size_t stride) {
     return _mm256_insertf128_ps(_mm256_castps128_ps256(shi_load_four(p)), shi_load_four(p + stride), 1);
 }
-SHI_INLINE void shi_store_fours(unsigned char *p, size_t stride, int n, shi_v v) {
-    shi_store_four(p, n, _mm256_castps256_ps128(v));
-    shi_store_four(p + stride, n, _mm256_extractf128_ps(v, 1));
+SHI_INLINE void shi_store3(unsigned char *p, size_t stride, shi_v a, shi_v b, shi_v c) {
+    shi_store_threes(p, stride, _mm256_castps256_ps128(a), _mm256_castps256_ps128(b), _mm256_castps256_ps128(c));
+    shi_store_threes(p + 4 * stride, stride, _mm256_extractf128_ps(a, 1), _mm256_extractf128_ps(b, 1), _mm256_extractf128_ps(c, 1));
 }
 
 #elif SH_SIMD == SH_SIMD_SSE2
@@ -2688,7 +2879,8 @@ SHI_INLINE shi_v shi_or(shi_v a, shi_v b) { return _mm_or_ps(a, b); }
 SHI_INLINE shi_m shi_less(shi_v a, shi_v b) { return _mm_cmplt_ps(a, b); }
 SHI_INLINE shi_v shi_select(shi_m m, shi_v a, shi_v b) { return _mm_or_ps(_mm_and_ps(m, a), _mm_andnot_ps(m, b)); }
 SHI_INLINE shi_i shi_iload16(const void *p) {
-    return _mm_unpacklo_epi16(_mm_loadl_epi64((const __m128i *)p), _mm_setzero_si128());
+    const __m128i words = _mm_loadl_epi64((const __m128i *)p);
+    return _mm_srai_epi32(_mm_unpacklo_epi16(words, words), 16);
 }
 SHI_INLINE shi_i shi_iload32(const void *p) { return _mm_loadu_si128((const __m128i *)p); }
 SHI_INLINE shi_i shi_iand(shi_i a, int b) { return _mm_and_si128(a, _mm_set1_epi32(b)); }
@@ -2723,6 +2915,8 @@ SHI_INLINE shi_v shi_mul(shi_v a, shi_v b) { return vmulq_f32(a, b); }
 #if defined(__aarch64__) || defined(_M_ARM64)
 SHI_INLINE shi_v shi_div(shi_v a, shi_v b) { return vdivq_f32(a, b); }
 SHI_INLINE shi_v shi_sqrt(shi_v a) { return vsqrtq_f32(a); }
+#define SHI_HAS_HALF 1
+SHI_INLINE shi_v shi_load_half(const void *p) { return vcvt_f32_f16(vreinterpret_f16_u8(vld1_u8((const uint8_t *)p))); }
 #else
 /* 32-bit NEON has estimates only; division and square root lane by lane are correctly rounded and not in any inner loop's way. */
 SHI_INLINE shi_v shi_div(shi_v a, shi_v b) {
@@ -2755,7 +2949,7 @@ SHI_INLINE shi_v shi_or(shi_v a, shi_v b) {
 SHI_INLINE shi_m shi_less(shi_v a, shi_v b) { return vcltq_f32(a, b); }
 SHI_INLINE shi_v shi_select(shi_m m, shi_v a, shi_v b) { return vbslq_f32(m, a, b); }
 SHI_INLINE shi_i shi_iload16(const void *p) {
-    return vreinterpretq_s32_u32(vmovl_u16(vreinterpret_u16_u8(vld1_u8((const uint8_t *)p))));
+    return vmovl_s16(vreinterpret_s16_u8(vld1_u8((const uint8_t *)p)));
 }
 SHI_INLINE shi_i shi_iload32(const void *p) { return vreinterpretq_s32_u8(vld1q_u8((const uint8_t *)p)); }
 SHI_INLINE shi_i shi_iand(shi_i a, int b) { return vandq_s32(a, vdupq_n_s32(b)); }
@@ -2805,7 +2999,7 @@ SHI_INLINE shi_v shi_abs(shi_v a) { return wasm_f32x4_abs(a); }
 SHI_INLINE shi_v shi_or(shi_v a, shi_v b) { return wasm_v128_or(a, b); }
 SHI_INLINE shi_m shi_less(shi_v a, shi_v b) { return wasm_f32x4_lt(a, b); }
 SHI_INLINE shi_v shi_select(shi_m m, shi_v a, shi_v b) { return wasm_v128_bitselect(a, b, m); }
-SHI_INLINE shi_i shi_iload16(const void *p) { return wasm_u32x4_load16x4(p); }
+SHI_INLINE shi_i shi_iload16(const void *p) { return wasm_i32x4_load16x4(p); }
 SHI_INLINE shi_i shi_iload32(const void *p) { return wasm_v128_load(p); }
 SHI_INLINE shi_i shi_iand(shi_i a, int b) { return wasm_v128_and(a, wasm_i32x4_splat(b)); }
 SHI_INLINE shi_i shi_iadd(shi_i a, int b) { return wasm_i32x4_add(a, wasm_i32x4_splat(b)); }
@@ -2850,7 +3044,7 @@ SHI_INLINE shi_v shi_max(shi_v a, shi_v b) { return a > b ? a : b; }
 SHI_INLINE shi_v shi_sqrt(shi_v a) { return sqrtf(a); }
 SHI_INLINE shi_v shi_abs(shi_v a) { return fabsf(a); }
 SHI_INLINE shi_i shi_iload16(const void *p) {
-    uint16_t a;
+    int16_t a;
     memcpy(&a, p, sizeof a);
     return a;
 }
@@ -2879,10 +3073,6 @@ SHI_INLINE void shi_load4(const unsigned char *p, size_t stride, shi_v v[4]) {
     (void)stride;
     memcpy(v, p, 4 * sizeof *v);
 }
-SHI_INLINE void shi_store4(unsigned char *p, size_t stride, int n, const shi_v v[4]) {
-    (void)stride;
-    memcpy(p, v, (size_t)n * sizeof *v);
-}
 
 #else
 #error "SH_SIMD is not one of the SH_SIMD_... numbers"
@@ -2892,16 +3082,6 @@ SHI_INLINE void shi_store4(unsigned char *p, size_t stride, int n, const shi_v v
 SHI_INLINE shi_v shi_load_fours(const unsigned char *p, size_t stride) {
     (void)stride;
     return shi_load(p);
-}
-SHI_INLINE void shi_store_fours(unsigned char *p, size_t stride, int n, shi_v v) {
-    (void)stride;
-#if SH_SIMD == SH_SIMD_SSE2
-    shi_store_four(p, n, v);
-#else
-    float item[4];
-    shi_store(item, v);
-    memcpy(p, item, (size_t)n * sizeof(float));
-#endif
 }
 #endif
 
@@ -2913,18 +3093,45 @@ SHI_INLINE void shi_load4(const unsigned char *p, size_t stride, shi_v v[4]) {
     v[3] = shi_load_fours(p + 3 * stride, 4 * stride);
     shi_transpose4(v);
 }
-SHI_INLINE void shi_store4(unsigned char *p, size_t stride, int n, const shi_v v[4]) {
-    shi_v r[4] = { v[0], v[1], v[2], v[3] };
-    shi_transpose4(r);
-    shi_store_fours(p, 4 * stride, n, r[0]);
-    shi_store_fours(p + stride, 4 * stride, n, r[1]);
-    shi_store_fours(p + 2 * stride, 4 * stride, n, r[2]);
-    shi_store_fours(p + 3 * stride, 4 * stride, n, r[3]);
+#endif
+
+#if SH_SIMD == SH_SIMD_SSE2
+SHI_INLINE void shi_store3(unsigned char *p, size_t stride, shi_v a, shi_v b, shi_v c) {
+    shi_store_threes(p, stride, a, b, c);
+}
+#elif SH_SIMD != SH_SIMD_AVX2 && SH_SIMD != SH_SIMD_AVX512
+SHI_INLINE void shi_store3(unsigned char *p, size_t stride, shi_v a, shi_v b, shi_v c) {
+    float lanes[3][SHI_LANES];
+    shi_store(lanes[0], a);
+    shi_store(lanes[1], b);
+    shi_store(lanes[2], c);
+    for (int i = 0; i < SHI_LANES; i++, p += stride) {
+        const float item[3] = { lanes[0][i], lanes[1][i], lanes[2][i] };
+        memcpy(p, item, sizeof item);
+    }
 }
 #endif
 
-/* Asks for the cache line at p, which need not be readable. */
-SHI_INLINE void shi_prefetch(const void *p) {
+#if SHI_LANES <= 8
+SHI_INLINE shi_v shi_load8(const void *p) { return shi_load(p); }
+SHI_INLINE void shi_store8(void *p, shi_v a) { shi_store(p, a); }
+#endif
+
+SHI_INLINE shi_v shi_keep(shi_v a) {
+#if defined(__GNUC__) && (SH_SIMD == SH_SIMD_AVX512 || SH_SIMD == SH_SIMD_AVX2 || SH_SIMD == SH_SIMD_SSE2)
+    __asm__("" : "+x"(a));
+#endif
+    return a;
+}
+
+SHI_INLINE size_t shi_hide(size_t n) {
+#if defined(__GNUC__) && SH_SIMD != SH_SIMD_SCALAR
+    __asm__("" : "+r"(n));
+#endif
+    return n;
+}
+
+SHI_INLINE void shi_prefetch_line(const void *p) {
 #if SH_SIMD == SH_SIMD_AVX512 || SH_SIMD == SH_SIMD_AVX2 || SH_SIMD == SH_SIMD_SSE2
     _mm_prefetch((const char *)p, _MM_HINT_T0);
 #elif defined(__GNUC__)
@@ -2932,6 +3139,12 @@ SHI_INLINE void shi_prefetch(const void *p) {
 #else
     (void)p;
 #endif
+}
+
+SHI_INLINE void shi_prefetch(const unsigned char *p) {
+    shi_prefetch_line(p);
+    if (2 * sizeof(shi_v) > 64)
+        shi_prefetch_line(p + 64);
 }
 
 /* Four bytes a lane as a word whose low byte is the first. */
@@ -2981,18 +3194,51 @@ SHI_INLINE shi_v shi_polynomial(int order, const shi_v *p, shi_v x, shi_v y, shi
     return shi_madd(px, x, shi_madd(py, y, shi_madd(p[SHI_Z], z, p[SHI_1])));
 }
 
+/* sums += factor * values, twice: two share the load of a factor. */
+SHI_INLINE void shi_madd_two(shi_v factor, shi_v a, shi_v b, shi_v *sum_a, shi_v *sum_b) {
+    factor = shi_keep(factor);
+    *sum_a = shi_madd(factor, a, *sum_a);
+    *sum_b = shi_madd(factor, b, *sum_b);
+}
+
+/* shi_polynomial of two vectors of directions a and b, each x, y, z, for kernels whose coefficients do not all fit into registers. */
+SHI_INLINE void shi_polynomial_two(int order, const shi_v *p, const shi_v *a, const shi_v *b, shi_v out[2]) {
+    shi_v c = p[SHI_1], d = p[SHI_1];
+    if (order >= SH_L1) {
+        shi_v px_a = p[SHI_X], px_b = p[SHI_X], py_a = p[SHI_Y], py_b = p[SHI_Y];
+        if (order >= SH_L2) {
+            shi_madd_two(p[SHI_XZ], a[2], b[2], &px_a, &px_b);
+            shi_madd_two(p[SHI_YZ], a[2], b[2], &py_a, &py_b);
+            shi_madd_two(p[SHI_XY], a[1], b[1], &px_a, &px_b);
+            shi_madd_two(p[SHI_YY], a[1], b[1], &py_a, &py_b);
+            shi_madd_two(p[SHI_XX], a[0], b[0], &px_a, &px_b);
+        }
+        shi_madd_two(p[SHI_Z], a[2], b[2], &c, &d);
+        c = shi_madd(px_a, a[0], shi_madd(py_a, a[1], c));
+        d = shi_madd(px_b, b[0], shi_madd(py_b, b[1], d));
+    }
+    out[0] = c;
+    out[1] = d;
+}
+
 SHI_INLINE void shi_splat_all(int order, const float *p, shi_v *v) {
     for (int i = 0; i < SH_COUNT(order); i++)
         v[i] = shi_splat(p[i]);
 }
 
-/* One channel of `count` directions, a multiple of SHI_LANES. */
+/* One channel of `count` directions, a multiple of SHI_LANES. Unless NULL, as many floats from `next_in` and `next_out` on are asked
+ * for: what the next block needs, in small portions, while there is arithmetic to do. */
 SHI_INLINE void shi_evaluate(int order, const float *polynomial, const float *x, const float *y, const float *z, float *out,
-                             size_t count) {
+                             size_t count, const float *next_in, const float *next_out) {
     shi_v p[SH_COUNT(SH_L2)];
     shi_splat_all(order, polynomial, p);
-    for (size_t i = 0; i < count; i += SHI_LANES)
+    for (size_t i = 0; i < count; i += SHI_LANES) {
         shi_store(out + i, shi_polynomial(order, p, shi_load(x + i), shi_load(y + i), shi_load(z + i)));
+        if (next_out) {
+            shi_prefetch_line(next_in + i);
+            shi_prefetch_line(next_out + i);
+        }
+    }
 }
 
 /* A block of directions copied out of the caller's arrays, padded to whole vectors, and one channel of results. */
@@ -3050,9 +3296,14 @@ SHI_INLINE void shi_evaluate_soa(int order, const shi_soa *job) {
             float *out = job->out + (size_t)k * count + i;
             if (k + 1 < job->channels)
                 shi_polynomial_fold(order, job->c + (k + 1) * SH_COUNT(order), job->w1, job->w2, fold[(k + 1) % 2]);
-            shi_evaluate(order, polynomial, x + i, y + i, z + i, out, whole);
+            if (order >= SH_L2 && count - i >= 2 * SHI_BATCH) { /* below, there is too little arithmetic to hide anything behind */
+                const float *next_in = k % 3 == 0 ? x : k % 3 == 1 ? y : z;
+                shi_evaluate(order, polynomial, x + i, y + i, z + i, out, whole, next_in + i + SHI_BATCH, out + SHI_BATCH);
+            } else {
+                shi_evaluate(order, polynomial, x + i, y + i, z + i, out, whole, NULL, NULL);
+            }
             if (rest) {
-                shi_evaluate(order, polynomial, block.x, block.y, block.z, block.out, shi_round_up(rest));
+                shi_evaluate(order, polynomial, block.x, block.y, block.z, block.out, shi_round_up(rest), NULL, NULL);
                 memcpy(out + whole, block.out, rest * sizeof *out);
             }
         }
@@ -3095,9 +3346,9 @@ typedef struct shi_aos {
     size_t out_stride, count;
 } shi_aos;
 
-/* Items from `first` on, by way of planar blocks: any number of channels. */
-SHI_INLINE void shi_evaluate_aos_blocks(int order, const shi_aos *job, size_t first) {
-    for (size_t i = first; i < job->count; i += SHI_BATCH) {
+/* By way of planar blocks: any number of channels. */
+SHI_INLINE void shi_evaluate_aos_blocks(int order, const shi_aos *job) {
+    for (size_t i = 0; i < job->count; i += SHI_BATCH) {
         const size_t n = shi_at_most(job->count - i, SHI_BATCH);
         shi_block block;
         for (size_t j = 0; j < shi_round_up(n); j++) {
@@ -3111,42 +3362,58 @@ SHI_INLINE void shi_evaluate_aos_blocks(int order, const shi_aos *job, size_t fi
         for (int k = 0; k < job->channels; k++) {
             float polynomial[SH_COUNT(SH_L2)];
             shi_polynomial_fold(order, job->c + k * SH_COUNT(order), job->w1, job->w2, polynomial);
-            shi_evaluate(order, polynomial, block.x, block.y, block.z, block.out, shi_round_up(n));
+            shi_evaluate(order, polynomial, block.x, block.y, block.z, block.out, shi_round_up(n), NULL, NULL);
             for (size_t j = 0; j < n; j++)
                 memcpy(job->out + (i + j) * job->out_stride + (size_t)k * sizeof(float), block.out + j, sizeof(float));
         }
     }
 }
 
-/* Three channels go straight from item to item, transposed in registers. load4 reads one float past a direction, so the last vector
- * is left to the blocks. Returns how many items are done. */
-SHI_INLINE size_t shi_evaluate_aos_rgb(int order, const shi_aos *job) {
-    const size_t in_stride = job->in_stride, out_stride = job->out_stride, count = job->count;
+/* Three channels, whose polynomials lie one after the other, of 2 * SHI_LANES items, transposed in registers. load4 reads one float
+ * past a direction. */
+SHI_INLINE void shi_evaluate_aos_pass(int order, const shi_v *p, const unsigned char *in, size_t in_stride,
+                                      unsigned char *out, size_t out_stride) {
+    shi_v a[4], b[4], v[3][2];
+    shi_load4(in, in_stride, a);
+    shi_load4(in + SHI_LANES * in_stride, in_stride, b);
+    SHI_UNROLL
+    for (int k = 0; k < 3; k++)
+        shi_polynomial_two(order, p + k * SH_COUNT(order), a, b, v[k]);
+    shi_store3(out, out_stride, v[0][0], v[1][0], v[2][0]);
+    shi_store3(out + SHI_LANES * out_stride, out_stride, v[0][1], v[1][1], v[2][1]);
+}
+
+/* The last pass, of at most 2 * SHI_LANES items, goes through a copy. */
+SHI_INLINE void shi_evaluate_aos_rgb(int order, const shi_aos *job) {
     const unsigned char *in = job->in;
     unsigned char *out = job->out;
-    shi_v p[3][SH_COUNT(SH_L2)], d[4], v[4];
-    size_t i = 0;
+    size_t left = job->count;
+    shi_v p[3 * SH_COUNT(SH_L2)];
+    float copy[2 * SHI_LANES][4];
     for (int k = 0; k < 3; k++) {
         float polynomial[SH_COUNT(SH_L2)];
         shi_polynomial_fold(order, job->c + k * SH_COUNT(order), job->w1, job->w2, polynomial);
-        shi_splat_all(order, polynomial, p[k]);
+        shi_splat_all(order, polynomial, p + k * SH_COUNT(order));
     }
-    for (; count - i > SHI_LANES; i += SHI_LANES) {
-        shi_load4(in + i * in_stride, in_stride, d);
-        v[0] = shi_polynomial(order, p[0], d[0], d[1], d[2]);
-        v[1] = shi_polynomial(order, p[1], d[0], d[1], d[2]);
-        v[2] = shi_polynomial(order, p[2], d[0], d[1], d[2]);
-        v[3] = v[2];
-        shi_store4(out + i * out_stride, out_stride, 3, v);
+    for (; left > 2 * SHI_LANES; left -= 2 * SHI_LANES) {
+        const size_t in_stride = shi_hide(job->in_stride), out_stride = shi_hide(job->out_stride);
+        shi_evaluate_aos_pass(order, p, in, in_stride, out, out_stride);
+        in += 2 * SHI_LANES * in_stride;
+        out += 2 * SHI_LANES * out_stride;
     }
-    return i;
+    memset(copy, 0, sizeof copy);
+    for (size_t i = 0; i < left; i++)
+        memcpy(copy[i], in + i * job->in_stride, 3 * sizeof(float));
+    shi_evaluate_aos_pass(order, p, (const unsigned char *)copy, sizeof copy[0], (unsigned char *)copy, sizeof copy[0]);
+    for (size_t i = 0; i < left; i++)
+        memcpy(out + i * job->out_stride, copy[i], 3 * sizeof(float));
 }
 
 SHI_INLINE void shi_evaluate_aos(int order, const shi_aos *job) {
-    size_t done = 0;
-    if (job->channels == 3 && job->count)
-        done = shi_evaluate_aos_rgb(order, job);
-    shi_evaluate_aos_blocks(order, job, done);
+    if (job->channels == 3)
+        shi_evaluate_aos_rgb(order, job);
+    else
+        shi_evaluate_aos_blocks(order, job);
 }
 
 SHI_FUNCTION void shi_evaluate_aos_l0(const shi_aos *job) { shi_evaluate_aos(SH_L0, job); }
@@ -3438,7 +3705,8 @@ SHI_INLINE void shi_rotate_sets(const float *c, const float m[9], float *out, si
         for (int v = 0; v < SHI_ROTATE_VECTORS; v++)
             turned[v] = shi_rotate_vector(rotation.column[v], c + SH_X);
         out[SH_R0] = c[SH_R0];
-        memcpy(out + SH_X, turned, SHI_ROTATED * sizeof(float));
+        for (int v = 0; v < SHI_ROTATE_VECTORS; v++)
+            shi_store8(out + SH_X + v * SHI_LANES, turned[v]);
     }
 }
 
@@ -3545,17 +3813,17 @@ SHI_FUNCTION void sh_product_batch(int order, const float *a, const float *b, fl
     }
 }
 
-#if SHI_LANES > 1 && SHI_LANES <= 8
+#if SHI_LANES > 1
 /* The basis but its 1, as products p q - r, whose factors are spread over the lanes as in shi_rotation_vector. */
 SHI_INLINE shi_v shi_basis_vector(const float dir[3], int first) {
     static const float p_is[3][8] = { { 1, 0, 0, 1, 1, 1 }, { 0, 1, 0, 0, 0, 0, 1, 1 }, { 0, 0, 1 } };
     static const float q_is[4][8] = { { 1, 1, 1 }, { 0, 0, 0, 1 }, { 0, 0, 0, 0, 1, 0, 1 }, { 0, 0, 0, 0, 0, 1, 0, 1 } };
     static const float minus_r[8] = { 0, 0, 0, -1.0f / 3.0f, 0, 0, -1.0f / 3.0f };
     const shi_v x = shi_splat(dir[0]), y = shi_splat(dir[1]), z = shi_splat(dir[2]);
-    const shi_v p = shi_madd(shi_load(p_is[0] + first), x, shi_madd(shi_load(p_is[1] + first), y, shi_mul(shi_load(p_is[2] + first), z)));
-    const shi_v q = shi_madd(shi_load(q_is[1] + first), x, shi_madd(shi_load(q_is[2] + first), y,
-                             shi_madd(shi_load(q_is[3] + first), z, shi_load(q_is[0] + first))));
-    return shi_madd(p, q, shi_load(minus_r + first));
+    const shi_v p = shi_madd(shi_load8(p_is[0] + first), x, shi_madd(shi_load8(p_is[1] + first), y, shi_mul(shi_load8(p_is[2] + first), z)));
+    const shi_v q = shi_madd(shi_load8(q_is[1] + first), x, shi_madd(shi_load8(q_is[2] + first), y,
+                             shi_madd(shi_load8(q_is[3] + first), z, shi_load8(q_is[0] + first))));
+    return shi_madd(p, q, shi_load8(minus_r + first));
 }
 
 SHI_INLINE void shi_add_zonal(int order, int channels, const float zonal[3], const float dir[3], const float *value, float *c) {
@@ -3564,15 +3832,17 @@ SHI_INLINE void shi_add_zonal(int order, int channels, const float zonal[3], con
         shi_add_zonal_scalar(order, channels, zonal, dir, value, c);
         return;
     }
+    SHI_UNROLL
     for (int k = 0; k < channels; k++)
-        c[k * SH_COUNT(SH_L2)] += value[k] * zonal[0];
+        shi_add_scaled(value[k], zonal[0], c + k * SH_COUNT(SH_L2));
     for (int first = 0; first < SHI_ROTATED; first += SHI_LANES) {
         const shi_v k1 = shi_splat(zonal[1]), k2 = shi_splat(zonal[2]);
-        const shi_v factor = shi_madd(shi_load(is_first + first), k1, shi_mul(shi_load(is_second + first), k2));
+        const shi_v factor = shi_madd(shi_load8(is_first + first), k1, shi_mul(shi_load8(is_second + first), k2));
         const shi_v lobe = shi_mul(factor, shi_basis_vector(dir, first));
         float *at = c + SH_X + first;
+        SHI_UNROLL
         for (int k = 0; k < channels; k++, at += SH_COUNT(SH_L2))
-            shi_store(at, shi_madd(shi_splat(value[k]), lobe, shi_load(at)));
+            shi_store8(at, shi_add(shi_load8(at), shi_mul(shi_splat(value[k]), lobe)));
     }
 }
 #else
@@ -3587,6 +3857,7 @@ SHI_INLINE void shi_add_zonal(int order, int channels, const float zonal[3], con
  * Interleaved channels stay so: vectors repeat their channels every `phases`. */
 
 enum { SHI_BLOCK = SHI_LANES == 1 ? 32 : 128, SHI_PHASES = 4, SHI_GROUP = 16, SHI_CHAIN = 32 };
+enum { SHI_MAX_SIDE = 1 << 28 }; /* 2 (x + SHI_BLOCK) is an int */
 
 /* How texels lie in memory, and in the blocks that the kernels read: `planes` planes of `interleave` interleaved channels. */
 typedef struct shi_layout {
@@ -3620,7 +3891,8 @@ SHI_FUNCTION int shi_image_check(const sh_image *image, shi_layout *layout) {
     if (!shi_image_layout(image, layout))
         return SH_ERROR_FORMAT;
     const size_t limit = (size_t)-1 / 2;
-    if (image->width < 1 || image->height < 1 || (size_t)image->width > limit / layout->pixel_size)
+    if (image->width < 1 || image->width > SHI_MAX_SIDE || image->height < 1 || image->height > SHI_MAX_SIDE ||
+        (size_t)image->width > limit / layout->pixel_size)
         return SH_ERROR_SIZE;
     const size_t row = (size_t)image->width * layout->pixel_size, stride = image->row_stride ? image->row_stride : row;
     return stride < row || (size_t)image->height > limit / stride ? SH_ERROR_SIZE : SH_OK;
@@ -3681,22 +3953,29 @@ SHI_FUNCTION int shi_reader_init(const sh_image *image, int images, unsigned fla
     return SH_OK;
 }
 
-/* Halves to floats: the exponent is rebiased by a multiplication, which brings subnormals along (under denormals-are-zero they read
- * as 0: < 6.2e-5). Infinity and NaN become infinite. */
-SHI_INLINE shi_v shi_half_to_float(shi_i h) {
-    const shi_v rebias = shi_splat(5192296858534827628530496329220096.0f); /* 2^112 */
-    const shi_v magnitude = shi_mul(shi_as_float(shi_shl(shi_iand(h, 0x7fff), 13)), rebias);
-    const shi_v value = shi_select(shi_less(magnitude, shi_splat(65536.0f)), magnitude, shi_as_float(shi_iadd(shi_iand(h, 0), 0x7f800000)));
-    return shi_or(value, shi_as_float(shi_shl(shi_shr(h, 15), 31)));
+/* Halves to floats: the exponent is rebiased as an integer. Of a subnormal half, m 2^-24, that makes y = 2^-15 + m 2^-25, of which
+ * 2y - 2^-14 is the value; of any other it is no less than y. No operand is a subnormal float, which -ffast-math and 32-bit NEON flush,
+ * and which many processors are slow with. NaN becomes infinite, which is left out as well. */
+SHI_INLINE shi_v shi_decode_half(const void *p) {
+#if defined(SHI_HAS_HALF)
+    return shi_load_half(p);
+#else
+    const shi_i h = shi_iload16(p);
+    const shi_v y = shi_as_float(shi_iadd(shi_iand(shi_shl(h, 13), 0x0fffe000), 112 << 23));
+    const shi_v magnitude = shi_min(y, shi_madd(y, shi_splat(2.0f), shi_splat(-1.0f / 16384)));
+    const shi_v infinite = shi_as_float(shi_iadd(shi_iand(h, 0), 0x7f800000)), sign = shi_as_float(shi_iand(h, -0x7fffffff - 1));
+    return shi_or(sign, shi_select(shi_less(magnitude, shi_splat(65536.0f)), magnitude, infinite));
+#endif
 }
 
 SHI_INLINE void shi_decode_f16(const unsigned char *in, int count, float *out) {
     for (int i = 0; i < count; i += SHI_LANES)
-        shi_store(out + i, shi_half_to_float(shi_iload16(in + 2 * i)));
+        shi_store(out + i, shi_decode_half(in + 2 * i));
 }
 
 /* A word of three mantissas of `bits` bits each, lowest first, and an exponent whose scale is given. */
 SHI_INLINE void shi_unpack_rgb(shi_i word, int bits, shi_v scale, float *out) {
+    SHI_UNROLL
     for (int k = 0; k < 3; k++)
         shi_store(out + k * SHI_BLOCK, shi_mul(shi_to_float(shi_iand(shi_shr(word, k * bits), (1 << bits) - 1)), scale));
 }
@@ -3722,13 +4001,6 @@ SHI_INLINE void shi_decode_srgb8(const unsigned char *in, const float *srgb, int
         out[i] = srgb[in[i]];
 }
 
-/* Looks at the bits: -ffast-math cannot remove it. */
-SHI_INLINE int shi_is_finite(float a) {
-    uint32_t bits;
-    memcpy(&bits, &a, sizeof bits);
-    return (bits & 0x7f800000u) != 0x7f800000u;
-}
-
 /* Leaves out, clamps, counts and scales, in a decoded block of `count` pixels. */
 SHI_FUNCTION void shi_clean(shi_reader *reader, int count, float *pixels) {
     const int stride = reader->layout.interleave, channels = reader->layout.channels;
@@ -3736,7 +4008,7 @@ SHI_FUNCTION void shi_clean(shi_reader *reader, int count, float *pixels) {
         float *texel = pixels + i * stride;
         int finite = 1, negative = 0;
         for (int k = 0; k < channels; k++)
-            finite &= shi_is_finite(texel[k]);
+            finite &= shi_is_finite(&texel[k]);
         for (int k = 0; k < channels; k++) {
             negative |= finite && texel[k] < 0.0f;
             texel[k] = !finite || (texel[k] < 0.0f && (reader->flags & SH_CLAMP_NEGATIVE)) ? 0.0f : reader->scale * texel[k];
@@ -3774,6 +4046,10 @@ SHI_FUNCTION const unsigned char *shi_decode_block(shi_reader *reader, const uns
     }
     if (reader->careful && reader->layout.planes == 1)
         shi_clean(reader, count, scratch->decoded);
+    else if (reader->careful) /* a shared exponent: finite, not negative */
+        for (int i = 0; i < padded; i++)
+            for (int plane = 0; plane < reader->layout.planes; plane++)
+                scratch->decoded[plane * SHI_BLOCK + i] *= reader->scale;
     return (const unsigned char *)scratch->decoded;
 }
 
@@ -3794,31 +4070,34 @@ SHI_INLINE const unsigned char *shi_read_block(shi_reader *reader, int row, int 
  * functions up to sign, so they are folded first. Within a block p is counted from the block's first column: all blocks share one
  * small table, and their sums are turned to the block's azimuth. */
 
-enum { SHI_SUM, SHI_COS1, SHI_SIN1, SHI_COS2, SHI_SIN2, SHI_SUMS, SHI_MOMENTS = 9 };
+enum { SHI_SUM, SHI_COS1, SHI_SIN1, SHI_COS2, SHI_SIN2, SHI_SUMS, SHI_MOMENTS = 9, SHI_FRAMES = 3 };
 
 typedef struct shi_fold_sums {
     shi_v sum, cos1, sin1, cos2, sin2;
 } shi_fold_sums;
 
-/* What depends on a panorama's columns only: vectors of cos p, sin p, cos 2p, sin 2p for each vector of a block's columns, side by
+/* What depends on a panorama's columns only: cos p, sin p, cos 2p, sin 2p for each vector of a block's columns, aligned and side by
  * side (four arrays a power of two apart would compete for the same cache lines); the angle of a block; and the factor that makes a
  * row's sum of frequency 0, 1, 2 a mean over azimuth. */
 typedef struct shi_columns {
-    float table[SHI_BLOCK * 4 * 4];
+    shi_v table[SHI_BLOCK * 4 / SHI_LANES][4];
     double block_cos, block_sin, mean[3];
 } shi_columns;
 
 SHI_FUNCTION void shi_columns_init(int width, int interleave, int point, shi_columns *columns) {
     const double step = 2.0 * SHI_PI / width;
     const int padded = width < SHI_BLOCK ? (int)shi_round_up((size_t)width) : SHI_BLOCK;
+    float lanes[4][SHI_LANES];
     for (int i = 0; i < padded; i++) {
         const double c = cos((i + 0.5) * step), s = sin((i + 0.5) * step);
         for (int j = i * interleave; j < (i + 1) * interleave; j++) {
-            float *t = columns->table + j / SHI_LANES * 4 * SHI_LANES + j % SHI_LANES;
-            t[0] = (float)c;
-            t[SHI_LANES] = (float)s;
-            t[2 * SHI_LANES] = (float)(c * c - s * s);
-            t[3 * SHI_LANES] = (float)(2.0 * c * s);
+            const int lane = j % SHI_LANES;
+            lanes[0][lane] = (float)c;
+            lanes[1][lane] = (float)s;
+            lanes[2][lane] = (float)(c * c - s * s);
+            lanes[3][lane] = (float)(2.0 * c * s);
+            for (int f = 0; f < 4 && lane == SHI_LANES - 1; f++)
+                columns->table[j / SHI_LANES][f] = shi_load(lanes[f]);
         }
     }
     columns->block_cos = cos((double)SHI_BLOCK * step);
@@ -3827,21 +4106,6 @@ SHI_FUNCTION void shi_columns_init(int width, int interleave, int point, shi_col
     columns->mean[0] = 1.0 / width;
     columns->mean[1] = (point ? width > 1 : sin(0.5 * step) / (0.5 * step)) / width;
     columns->mean[2] = (point ? width > 2 : sin(step) / step) / width;
-}
-
-/* Adds a vector of texels and the one half a turn further. */
-SHI_INLINE void shi_fold_add(int order, shi_v here, shi_v opposite, const float *table, shi_fold_sums *s) {
-    const shi_v even = shi_add(here, opposite);
-    s->sum = shi_add(s->sum, even);
-    if (order >= SH_L1) {
-        const shi_v odd = shi_sub(here, opposite);
-        s->cos1 = shi_madd(odd, shi_load(table), s->cos1);
-        s->sin1 = shi_madd(odd, shi_load(table + SHI_LANES), s->sin1);
-    }
-    if (order >= SH_L2) {
-        s->cos2 = shi_madd(even, shi_load(table + 2 * SHI_LANES), s->cos2);
-        s->sin2 = shi_madd(even, shi_load(table + 3 * SHI_LANES), s->sin2);
-    }
 }
 
 /* total += the sums of a block whose first column is at azimuth p: c1, s1, c2, s2 are the cosine and sine of p and of 2p. */
@@ -3864,9 +4128,10 @@ SHI_INLINE int shi_phases(int interleave) {
     return SHI_LANES == 1 ? interleave : interleave == 3 ? 3 : 1;
 }
 
-/* Float sums of a group of rows: each of the moments of SHI_MOMENTS, by phase. */
+/* Float sums of a group of rows: each of the moments of SHI_MOMENTS, by phase, in up to three frames of axes. */
 typedef struct shi_group {
-    shi_v moment[SHI_PHASES][SHI_MOMENTS];
+    int frames;
+    shi_v moment[SHI_FRAMES][SHI_PHASES][SHI_MOMENTS];
     shi_v signs; /* the sign bits of all values read, where they are asked for */
 } shi_group;
 
@@ -3878,19 +4143,52 @@ SHI_INLINE shi_v shi_signs(const unsigned char *in, int count) {
     return signs;
 }
 
+/* What comes next in memory: two rows and the bytes of each to ask for with every pass of a kernel's loop. Demand spread evenly, in
+ * one direction, keeps more of it under way than a hardware prefetcher does for passes that go over a block by phase. */
+typedef struct shi_next {
+    const unsigned char *row[2];
+    size_t step;
+} shi_next;
+
+/* So that the passes over a block ask for twice as many texels of each row as it has. */
+SHI_INLINE shi_next shi_next_from(const shi_reader *reader, const unsigned char *a, const unsigned char *b) {
+    const shi_layout *layout = &reader->layout;
+    const shi_next next = { { a, b }, 2 * SHI_LANES * layout->pixel_size / (size_t)(layout->interleave * layout->planes) };
+    return next;
+}
+
+SHI_INLINE void shi_next_ask(shi_next *next) {
+    for (int r = 0; r < 2; r++) {
+        shi_prefetch(next->row[r]);
+        next->row[r] += next->step;
+    }
+}
+
 /* Adds a block of two rows: here[r] and, half a turn further, opposite[r]. Two rows share the loads of the table. */
-SHI_INLINE void shi_fold_block(int order, const unsigned char *const here[2], const unsigned char *const opposite[2], int count, int phases,
-                               const shi_columns *columns, const float turn[4], shi_v total_a[SHI_PHASES][SHI_SUMS],
-                               shi_v total_b[SHI_PHASES][SHI_SUMS]) {
+SHI_INLINE void shi_fold_block(int order, const unsigned char *const here[2], const unsigned char *const opposite[2], shi_next *next,
+                               size_t vectors, int phases, const shi_columns *columns, const float turn[4],
+                               shi_v total_a[SHI_PHASES][SHI_SUMS], shi_v total_b[SHI_PHASES][SHI_SUMS]) {
     const shi_v zero = shi_splat(0.0f);
     for (int phase = 0; phase < phases; phase++) {
         shi_fold_sums a = { zero, zero, zero, zero, zero }, b = a;
-        for (int i = phase * SHI_LANES; i < count; i += phases * SHI_LANES) {
-            const size_t at = (size_t)i * sizeof(float);
-            const shi_v here_a = shi_load(here[0] + at), opposite_a = shi_load(opposite[0] + at);
-            const shi_v here_b = shi_load(here[1] + at), opposite_b = shi_load(opposite[1] + at);
-            shi_fold_add(order, here_a, opposite_a, columns->table + 4 * i, &a);
-            shi_fold_add(order, here_b, opposite_b, columns->table + 4 * i, &b);
+        for (size_t i = (size_t)phase; i < vectors; i += (size_t)phases) {
+            const size_t at = i * sizeof(shi_v);
+            const shi_v *table = columns->table[i];
+            const shi_v here_a = shi_load(here[0] + at), opposite_a = shi_keep(shi_load(opposite[0] + at));
+            const shi_v here_b = shi_load(here[1] + at), opposite_b = shi_keep(shi_load(opposite[1] + at));
+            const shi_v even_a = shi_add(here_a, opposite_a), odd_a = shi_sub(here_a, opposite_a);
+            const shi_v even_b = shi_add(here_b, opposite_b), odd_b = shi_sub(here_b, opposite_b);
+            a.sum = shi_add(a.sum, even_a);
+            b.sum = shi_add(b.sum, even_b);
+            if (order >= SH_L1) {
+                shi_madd_two(table[0], odd_a, odd_b, &a.cos1, &b.cos1);
+                shi_madd_two(table[1], odd_a, odd_b, &a.sin1, &b.sin1);
+            }
+            if (order >= SH_L2) {
+                shi_madd_two(table[2], even_a, even_b, &a.cos2, &b.cos2);
+                shi_madd_two(table[3], even_a, even_b, &a.sin2, &b.sin2);
+            }
+            shi_next_ask(next);
         }
         shi_fold_turn(order, &a, turn, total_a[phase]);
         shi_fold_turn(order, &b, turn, total_b[phase]);
@@ -3928,12 +4226,13 @@ SHI_INLINE void shi_row_weights_area(const shi_edge *a, const shi_edge *b, shi_r
     w->sin_cos = (b->sin * b->sin * b->sin - a->sin * a->sin * a->sin) / 6;
 }
 
-/* Point texels: Fejer's first rule, 1/H (1 - 2 sum_k cos(2 k t) / (4 k^2 - 1)), k <= H/2; exact for polynomials in cos t below
- * degree H. The cosines by their recurrence. */
-SHI_FUNCTION void shi_row_weights_point(int row, int height, shi_row_weights *w) {
+/* Point texels: Fejer's first rule, 1/H (1 - 2 sum_k cos(2 k t) / (4 k^2 - 1)), k <= K = H/2; exact for polynomials in cos t below
+ * degree H. The cosines by their recurrence. K is W/2 + 1024 at most, exact below degree W + 2048: a narrow image takes time in
+ * proportion to its texels, not to the square of its height. */
+SHI_FUNCTION void shi_row_weights_point(int row, int width, int height, shi_row_weights *w) {
     const double t = SHI_PI * (row + 0.5) / height, c = cos(t), s = sin(t), cos2 = c * c - s * s;
     double sum = 0.5, previous = 1.0, current = cos2;
-    for (int k = 1; k <= height / 2; k++) {
+    for (int k = 1; k <= height / 2 && k <= width / 2 + 1024; k++) {
         const double next = 2.0 * cos2 * current - previous;
         sum -= current / (4.0 * k * k - 1.0);
         previous = current;
@@ -3987,6 +4286,8 @@ SHI_INLINE void shi_fold_columns(int order, shi_reader *reader, const shi_column
     const float turn[4] = { (float)p.cos, (float)p.sin, (float)(p.cos * p.cos - p.sin * p.sin), (float)(2.0 * p.cos * p.sin) };
     const unsigned char *here[2], *opposite[2];
     shi_scratch scratch[4];
+    const int ahead = row + 3 < reader->image->height ? row + 2 : row;
+    shi_next next = shi_next_from(reader, shi_texel(reader, ahead, 2 * x), shi_texel(reader, ahead + rows - 1, 2 * x));
     for (int r = 0; r < 2; r++) {
         here[r] = r < rows ? shi_read_block(reader, row + r, x, count, padded, &scratch[2 * r]) : here[0];
         opposite[r] = r < rows ? shi_read_block(reader, row + r, further, folds ? count : 0, padded, &scratch[2 * r + 1]) : opposite[0];
@@ -3994,8 +4295,8 @@ SHI_INLINE void shi_fold_columns(int order, shi_reader *reader, const shi_column
             *signs = shi_or(*signs, shi_or(shi_signs(here[r], padded * interleave), shi_signs(opposite[r], padded * interleave)));
     }
     for (int plane = 0; plane < reader->layout.planes; plane++) {
-        shi_fold_block(order, here, opposite, padded * interleave, shi_phases(interleave), columns, turn, total[0] + plane,
-                       total[1] + plane);
+        shi_fold_block(order, here, opposite, &next, (size_t)(padded * interleave / SHI_LANES), shi_phases(interleave), columns, turn,
+                       total[0] + plane, total[1] + plane);
         for (int r = 0; r < 2; r++) {
             here[r] += SHI_BLOCK * sizeof(float);
             opposite[r] += SHI_BLOCK * sizeof(float);
@@ -4019,15 +4320,17 @@ SHI_INLINE void shi_fold_rows(int order, shi_reader *reader, const shi_columns *
             shi_fold_columns(order, reader, columns, row, rows, x, stop - x < SHI_BLOCK ? stop - x : SHI_BLOCK, p, total, &group->signs);
         for (int r = 0; r < rows; r++)
             for (int v = 0; v < vectors; v++)
-                shi_row_spread(order, &w[r], total[r][v], group->moment[v]);
+                shi_row_spread(order, &w[r], total[r][v], group->moment[0][v]);
     }
 }
 
-SHI_FUNCTION void shi_group_clear(shi_group *group) {
+SHI_FUNCTION void shi_group_clear(int frames, shi_group *group) {
+    group->frames = frames;
     group->signs = shi_splat(0.0f);
-    for (int phase = 0; phase < SHI_PHASES; phase++)
-        for (int i = 0; i < SHI_MOMENTS; i++)
-            group->moment[phase][i] = shi_splat(0.0f);
+    for (int frame = 0; frame < frames; frame++)
+        for (int phase = 0; phase < SHI_PHASES; phase++)
+            for (int i = 0; i < SHI_MOMENTS; i++)
+                group->moment[frame][phase][i] = shi_splat(0.0f);
 }
 
 /* Whether any value read had its sign bit set. */
@@ -4039,25 +4342,27 @@ SHI_INLINE int shi_any_sign(shi_v signs) {
     return (any >> 31) != 0;
 }
 
-/* A group's moments by colour channel, in double; returns 0 if one is not finite. */
-SHI_FUNCTION int shi_group_sum(int order, const shi_layout *layout, const shi_group *group, double moment[3][SHI_MOMENTS]) {
+/* A group's moments by frame and colour channel, in double; returns 0 if one is not finite. */
+SHI_FUNCTION int shi_group_sum(int order, const shi_layout *layout, const shi_group *group, double moment[][3][SHI_MOMENTS]) {
     const int interleave = layout->interleave, phases = shi_phases(interleave);
     int finite = 1;
-    for (int i = 0; i < SH_COUNT(order); i++) {
-        double sum[SHI_PHASES] = { 0 };
-        for (int plane = 0; plane < layout->planes; plane++) {
-            float lanes[SHI_PHASES * SHI_LANES];
-            for (int phase = 0; phase < phases; phase++)
-                shi_store(lanes + phase * SHI_LANES, group->moment[plane + phase][i]);
-            for (int j = 0; j < phases * SHI_LANES; j += interleave)
-                for (int k = 0; k < interleave; k++)
-                    sum[plane + k] += (double)lanes[j + k];
+    for (int f = 0; f < group->frames; f++)
+        for (int i = 0; i < SH_COUNT(order); i++) {
+            double sum[SHI_PHASES] = { 0 };
+            for (int plane = 0; plane < layout->planes; plane++) {
+                float lanes[SHI_PHASES * SHI_LANES];
+                for (int phase = 0; phase < phases; phase++)
+                    shi_store(lanes + phase * SHI_LANES, group->moment[f][plane + phase][i]);
+                for (int j = 0; j < phases * SHI_LANES; j += interleave)
+                    for (int k = 0; k < interleave; k++)
+                        sum[plane + k] += (double)lanes[j + k];
+            }
+            for (int k = 0; k < layout->channels; k++) {
+                const float rounded = (float)sum[k];
+                finite &= shi_is_finite(&rounded);
+                moment[f][k][i] = sum[k];
+            }
         }
-        for (int k = 0; k < layout->channels; k++) {
-            finite &= shi_is_finite((float)sum[k]);
-            moment[k][i] = sum[k];
-        }
-    }
     return finite;
 }
 
@@ -4065,15 +4370,15 @@ enum { SHI_ATTEMPTS = 3 };
 
 /* Values are looked at one by one only where the sums of a group say that something is wrong with one of them: in a second attempt;
  * and in a third they are scaled down, where finite values overflow. */
-SHI_FUNCTION void shi_group_begin(shi_reader *reader, int attempt, const sh_report *before, shi_group *group) {
-    shi_group_clear(group);
+SHI_FUNCTION void shi_group_begin(shi_reader *reader, int attempt, const sh_report *before, int frames, shi_group *group) {
+    shi_group_clear(frames, group);
     reader->report = *before;
     reader->careful = attempt > 0;
     reader->scale = attempt < 2 ? 1.0f : 1.0f / 16777216.0f; /* 2^-24 */
 }
 
 /* Whether the group's moments are good. */
-SHI_FUNCTION int shi_group_end(int order, const shi_reader *reader, const shi_group *group, double moment[3][SHI_MOMENTS]) {
+SHI_FUNCTION int shi_group_end(int order, const shi_reader *reader, const shi_group *group, double moment[][3][SHI_MOMENTS]) {
     return shi_group_sum(order, &reader->layout, group, moment) && (reader->careful || !shi_any_sign(group->signs));
 }
 
@@ -4105,13 +4410,14 @@ typedef struct shi_rows {
 } shi_rows;
 
 /* Weights of `count` rows from `row` on, at most SHI_GROUP. */
-SHI_FUNCTION void shi_row_weights_init(int row, int count, int height, int point, shi_row_weights *w) {
+SHI_FUNCTION void shi_row_weights_init(int row, int count, const sh_image *image, int point, shi_row_weights *w) {
+    const int height = image->height;
     const shi_edge step = shi_edge_at(SHI_PI / height);
     shi_edge upper = shi_edge_at(row * step.angle);
     for (int r = 0; r < count; r++) {
         const shi_edge lower = shi_edge_next(&upper, &step);
         if (point)
-            shi_row_weights_point(row + r, height, &w[r]);
+            shi_row_weights_point(row + r, image->width, height, &w[r]);
         else
             shi_row_weights_area(&upper, &lower, &w[r]);
         upper = lower;
@@ -4130,7 +4436,8 @@ SHI_FUNCTION void shi_report_add(const shi_reader *reader, uint64_t texels, sh_r
 SHI_FUNCTION int shi_rows_check(int order, const shi_rows *job, int known_flags) {
     if (!shi_order_ok(order) || !job->image || !job->accum || job->flags & ~(unsigned)known_flags)
         return SH_ERROR_ARGUMENT;
-    return job->first < 0 || job->count < 0 || job->first > job->image->height - job->count ? SH_ERROR_SIZE : SH_OK;
+    const int height = job->image->height;
+    return job->first < 0 || job->count < 0 || job->count > height || job->first > height - job->count ? SH_ERROR_SIZE : SH_OK;
 }
 
 /* Coefficients and report from the sums over a whole image; nothing where there was an error. */
@@ -4156,20 +4463,20 @@ SHI_INLINE int shi_equirect_rows(int order, const shi_rows *job) {
     const int group_rows = image->width > SHI_CHAIN * SHI_BLOCK ? 2 : SHI_GROUP; /* long rows: short chains of float sums */
     for (int row = job->first; row < end; row += group_rows) {
         const int rows = end - row < group_rows ? end - row : group_rows;
-        double moment[3][SHI_MOMENTS] = { { 0 } };
+        double moment[1][3][SHI_MOMENTS];
         shi_row_weights w[SHI_GROUP];
-        shi_row_weights_init(row, rows, image->height, point, w);
+        shi_row_weights_init(row, rows, image, point, w);
         const sh_report before = reader.report;
         for (int attempt = 0; attempt < SHI_ATTEMPTS; attempt++) {
             shi_group group;
-            shi_group_begin(&reader, attempt, &before, &group);
+            shi_group_begin(&reader, attempt, &before, 1, &group);
             for (int r = 0; r < rows; r += 2)
                 shi_fold_rows(order, &reader, &columns, row + r, rows - r < 2 ? 1 : 2, w + r, &group);
             if (shi_group_end(order, &reader, &group, moment))
                 break;
         }
         for (int k = 0; k < reader.layout.channels; k++) {
-            shi_equirect_add(&reader, &columns, moment[k], job->accum + k);
+            shi_equirect_add(&reader, &columns, moment[0][k], job->accum + k);
             for (int r = 0; r < rows; r++)
                 job->accum[k].weight += w[r].one;
         }
@@ -4233,21 +4540,22 @@ SHI_FUNCTION shi_plane shi_plane_make(const double p[3], const double q[3]) {
 
 /* Factors of a block of texels: a vector of each of the five for each vector of floats, side by side. */
 typedef struct shi_factors {
-    float table[SHI_BLOCK * 4 * SHI_SUMS];
+    shi_v table[SHI_BLOCK * 4 / SHI_LANES][SHI_SUMS];
 } shi_factors;
 
-/* Mean of rho^-3 over the square of half-width e about (u, v), rho^2 = 1 + u^2 + v^2: its Taylor series to e^4, off by < 1e-7 of
- * itself for e <= 1/16. t is 1 / rho^2, r is 1 / rho. */
+/* Mean of rho^-3 over the square of half-width e <= 1/16 about (u, v), rho^2 = 1 + u^2 + v^2: its Taylor series to e^4, or e^2 where
+ * that is enough, off by < 1e-7 of itself. t is 1 / rho^2, r is 1 / rho. */
 SHI_INLINE shi_v shi_cube_weight(shi_v u, shi_v v, shi_v t, shi_v r, float e) {
+    const shi_v ee = shi_splat(e * e), e2 = shi_mul(t, shi_madd(t, shi_splat(-2.5f), shi_splat(1.5f)));
+    if (e <= 1.0f / 64)
+        return shi_mul(shi_mul(t, r), shi_madd(ee, e2, shi_splat(1.0f)));
     const shi_v p = shi_mul(u, u), q = shi_mul(v, v), pq = shi_mul(p, q), s = shi_add(p, q);
     const shi_v squares = shi_madd(s, s, shi_mul(shi_splat(-2.0f), pq)); /* u^4 + v^4 */
-    const shi_v e2 = shi_mul(t, shi_madd(t, shi_splat(-2.5f), shi_splat(1.5f)));
     /* ((f_uuuu + f_vvvv) / 120 + f_uuvv / 36) / f */
     const shi_v quartic = shi_madd(shi_splat(945.0f / 120), squares, shi_mul(shi_splat(945.0f / 36), pq));
     const shi_v quadratic = shi_madd(shi_mul(t, t), quartic, shi_mul(t, shi_mul(s, shi_splat(-630.0f / 120 - 105.0f / 36))));
     const shi_v e4 = shi_mul(shi_mul(t, t), shi_add(quadratic, shi_splat(90.0f / 120 + 15.0f / 36)));
-    const shi_v series = shi_madd(shi_splat(e * e), shi_madd(shi_splat(e * e), e4, e2), shi_splat(1.0f));
-    return shi_mul(shi_mul(t, r), series);
+    return shi_mul(shi_mul(t, r), shi_madd(ee, shi_madd(ee, e4, e2), shi_splat(1.0f)));
 }
 
 /* The same for the octahedron: rho^2 = a^2 + b^2 + (1 - a - b)^2, a and b the absolute values of u and v; beyond the fold a + b = 1
@@ -4268,23 +4576,40 @@ SHI_INLINE shi_v shi_octahedron_weight(shi_v u, shi_v v, float e) {
     return shi_mul(shi_mul(t, shi_sqrt(t)), shi_add(one, series));
 }
 
-/* A vector of one value per pixel to one per interleaved float. */
-SHI_INLINE void shi_expand(shi_v a, int interleave, float *out, size_t step) {
+/* A vector of one value per pixel to factor `f` of the interleaved floats. */
+SHI_INLINE void shi_expand(shi_v a, int interleave, int f, shi_v table[][SHI_SUMS]) {
     if (interleave == 1) {
-        shi_store(out, a);
+        table[0][f] = a;
     } else if (interleave == 3) {
-        shi_store(out, shi_repeat3(a, 0));
-        shi_store(out + step, shi_repeat3(a, 1));
-        shi_store(out + 2 * step, shi_repeat3(a, 2));
+        table[0][f] = shi_repeat3(a, 0);
+        table[1][f] = shi_repeat3(a, 1);
+        table[2][f] = shi_repeat3(a, 2);
     } else {
-        float pixel[SHI_LANES];
+        float pixel[SHI_LANES], repeated[4 * SHI_LANES];
         shi_store(pixel, a);
         for (int i = 0; i < 4 * SHI_LANES; i++)
-            out[(size_t)(i / SHI_LANES) * step + (size_t)(i % SHI_LANES)] = pixel[i / 4];
+            repeated[i] = pixel[i / 4];
+        for (int i = 0; i < 4; i++)
+            table[i][f] = shi_load(repeated + i * SHI_LANES);
     }
 }
 
 enum { SHI_CUBE, SHI_OCTAHEDRON };
+
+/* The weight of a texel of half-width parts * e, over its area / (4 pi): that of parts x parts squares of half-width e, added. */
+SHI_INLINE shi_v shi_texel_weight(int kind, int parts, shi_v u, shi_v v, shi_v t, shi_v r, float e) {
+    if (parts == 1)
+        return kind == SHI_CUBE ? shi_cube_weight(u, v, t, r, e) : shi_octahedron_weight(u, v, e);
+    const shi_v one = shi_splat(1.0f);
+    shi_v w = shi_splat(0.0f);
+    for (int j = 0; j < parts * parts; j++) {
+        const shi_v pu = shi_add(u, shi_splat((float)(2 * (j % parts) + 1 - parts) * e));
+        const shi_v pv = shi_add(v, shi_splat((float)(2 * (j / parts) + 1 - parts) * e));
+        const shi_v pt = shi_div(one, shi_madd(pu, pu, shi_madd(pv, pv, one)));
+        w = shi_add(w, kind == SHI_CUBE ? shi_cube_weight(pu, pv, pt, shi_sqrt(pt), e) : shi_octahedron_weight(pu, pv, e));
+    }
+    return w;
+}
 
 /* The factors of texels [x, x + count) of row y of a size x size map; returns the texels' share of the sphere. Texels of small maps
  * are divided until the series holds. */
@@ -4307,20 +4632,7 @@ SHI_INLINE double shi_factors_init(int order, int kind, int size, int y, int x, 
         const shi_v px = kind == SHI_CUBE ? u : shi_select(beyond, beyond_x, au), py = kind == SHI_CUBE ? v : shi_select(beyond, beyond_y, av);
         const shi_v pz = kind == SHI_CUBE ? one : z, g = shi_madd(px, px, shi_madd(py, py, shi_mul(pz, pz)));
         const shi_v t = shi_div(one, g), r = shi_sqrt(t);
-        shi_v w = shi_splat(0.0f);
-        for (int j = 0; j < parts * parts; j++) {
-            const shi_v su = shi_add(u, shi_splat((float)(2 * (j % parts) + 1 - parts) * e));
-            const shi_v sv = shi_add(v, shi_splat((float)(2 * (j / parts) + 1 - parts) * e));
-            if (kind == SHI_OCTAHEDRON) {
-                w = shi_add(w, shi_octahedron_weight(su, sv, e));
-            } else if (parts == 1) {
-                w = shi_cube_weight(u, v, t, r, e);
-            } else {
-                const shi_v st = shi_div(one, shi_madd(su, su, shi_madd(sv, sv, one)));
-                w = shi_add(w, shi_cube_weight(su, sv, st, shi_sqrt(st), e));
-            }
-        }
-        w = shi_mul(w, shi_splat(area));
+        const shi_v w = shi_mul(shi_texel_weight(kind, parts, u, v, t, r, e), shi_splat(area));
         if (count - i >= SHI_LANES) {
             whole = shi_add(whole, w);
         } else {
@@ -4329,16 +4641,15 @@ SHI_INLINE double shi_factors_init(int order, int kind, int size, int y, int x, 
                 share += (double)weight[j];
         }
         const shi_v wr = shi_mul(w, r), wrr = shi_mul(w, t);
-        const size_t step = SHI_SUMS * SHI_LANES;
-        float *out = factors->table + (size_t)(i * interleave) * SHI_SUMS;
-        shi_expand(w, interleave, out + SHI_W * SHI_LANES, step);
+        shi_v(*out)[SHI_SUMS] = factors->table + i * interleave / SHI_LANES;
+        shi_expand(w, interleave, SHI_W, out);
         if (order >= SH_L1) {
-            shi_expand(wr, interleave, out + SHI_WR * SHI_LANES, step);
-            shi_expand(shi_mul(wr, u), interleave, out + SHI_WRU * SHI_LANES, step);
+            shi_expand(wr, interleave, SHI_WR, out);
+            shi_expand(shi_mul(wr, u), interleave, SHI_WRU, out);
         }
         if (order >= SH_L2) {
-            shi_expand(wrr, interleave, out + SHI_WRR * SHI_LANES, step);
-            shi_expand(shi_mul(wrr, u), interleave, out + SHI_WRRU * SHI_LANES, step);
+            shi_expand(wrr, interleave, SHI_WRR, out);
+            shi_expand(shi_mul(wrr, u), interleave, SHI_WRRU, out);
         }
     }
     shi_store(weight, whole);
@@ -4347,35 +4658,24 @@ SHI_INLINE double shi_factors_init(int order, int kind, int size, int y, int x, 
     return share;
 }
 
-/* sums[i] += texels * factor for two rows. */
-SHI_INLINE void shi_plane_add(const float *factor, shi_v texels_a, shi_v texels_b, shi_v *sum_a, shi_v *sum_b) {
-    const shi_v f = shi_load(factor);
-    *sum_a = shi_madd(texels_a, f, *sum_a);
-    *sum_b = shi_madd(texels_b, f, *sum_b);
-}
-
-/* Adds a block of two rows that share their factors, and asks for the rows that come next: the caller goes from face to face, which
- * no hardware prefetcher follows. */
-SHI_INLINE void shi_plane_block(int order, const unsigned char *row_a, const unsigned char *row_b, const unsigned char *next_a,
-                                const unsigned char *next_b, int count, int phases,
+/* Adds a block of two rows that share their factors. */
+SHI_INLINE void shi_plane_block(int order, const unsigned char *row_a, const unsigned char *row_b, size_t vectors, int phases,
                                 const shi_factors *factors, shi_v total_a[SHI_PHASES][SHI_SUMS], shi_v total_b[SHI_PHASES][SHI_SUMS]) {
     for (int phase = 0; phase < phases; phase++) {
         shi_v *ta = total_a[phase], *tb = total_b[phase];
         shi_v a[SHI_SUMS] = { ta[0], ta[1], ta[2], ta[3], ta[4] }, b[SHI_SUMS] = { tb[0], tb[1], tb[2], tb[3], tb[4] };
-        for (int i = phase * SHI_LANES; i < count; i += phases * SHI_LANES) {
-            const float *table = factors->table + i * SHI_SUMS;
-            const shi_v texels_a = shi_load(row_a + (size_t)i * sizeof(float)), texels_b = shi_load(row_b + (size_t)i * sizeof(float));
-            shi_plane_add(table + SHI_W * SHI_LANES, texels_a, texels_b, &a[SHI_W], &b[SHI_W]);
+        for (size_t i = (size_t)phase; i < vectors; i += (size_t)phases) {
+            const shi_v *f = factors->table[i];
+            const shi_v texels_a = shi_load(row_a + i * sizeof(shi_v)), texels_b = shi_load(row_b + i * sizeof(shi_v));
+            shi_madd_two(f[SHI_W], texels_a, texels_b, &a[SHI_W], &b[SHI_W]);
             if (order >= SH_L1) {
-                shi_plane_add(table + SHI_WR * SHI_LANES, texels_a, texels_b, &a[SHI_WR], &b[SHI_WR]);
-                shi_plane_add(table + SHI_WRU * SHI_LANES, texels_a, texels_b, &a[SHI_WRU], &b[SHI_WRU]);
+                shi_madd_two(f[SHI_WR], texels_a, texels_b, &a[SHI_WR], &b[SHI_WR]);
+                shi_madd_two(f[SHI_WRU], texels_a, texels_b, &a[SHI_WRU], &b[SHI_WRU]);
             }
             if (order >= SH_L2) {
-                shi_plane_add(table + SHI_WRR * SHI_LANES, texels_a, texels_b, &a[SHI_WRR], &b[SHI_WRR]);
-                shi_plane_add(table + SHI_WRRU * SHI_LANES, texels_a, texels_b, &a[SHI_WRRU], &b[SHI_WRRU]);
+                shi_madd_two(f[SHI_WRR], texels_a, texels_b, &a[SHI_WRR], &b[SHI_WRR]);
+                shi_madd_two(f[SHI_WRRU], texels_a, texels_b, &a[SHI_WRRU], &b[SHI_WRRU]);
             }
-            shi_prefetch(next_a + (size_t)i * sizeof(float));
-            shi_prefetch(next_b + (size_t)i * sizeof(float));
         }
         for (int i = 0; i < SHI_SUMS; i++) {
             ta[i] = a[i];
@@ -4399,89 +4699,34 @@ SHI_INLINE void shi_plane_spread(int order, const shi_plane *plane, const shi_v 
         }
 }
 
-/* One row's part: where its texels are, the plane that it lies on. */
-typedef struct shi_part {
-    const sh_image *image;
-    int row;
-    shi_plane plane;
-} shi_part;
-
-enum { SHI_PARTS = 12 }; /* six faces of a cube, two rows each */
-
-SHI_INLINE const unsigned char *shi_part_texel(shi_reader *reader, const shi_part *part, int i, int x) {
-    shi_reader_use(reader, part[i].image);
-    return shi_texel(reader, part[i].row, x);
-}
-
-/* Sums columns [begin, end) of parts that share the factors of row y, and spreads the sums into the group. Returns the share of the
- * sphere of one part. */
-SHI_INLINE double shi_plane_parts(int order, int kind, shi_reader *reader, int y, int begin, int end, const shi_part *part, int parts,
-                                  shi_group *group) {
+/* Sums columns [begin, end) of row y of an octahedral map and, if `mirrored`, of row size - 1 - y, which lie on the planes `plane`.
+ * Returns their share of the sphere. */
+SHI_INLINE double shi_octahedron_part(int order, shi_reader *reader, int y, int mirrored, int begin, int end, const shi_plane plane[2],
+                                      shi_group *group) {
     const int size = reader->image->width, interleave = reader->layout.interleave, planes = reader->layout.planes;
     const int phases = shi_phases(interleave);
-    shi_v total[SHI_PARTS][SHI_PHASES][SHI_SUMS];
+    shi_v total[2][SHI_PHASES][SHI_SUMS];
     shi_scratch scratch[2];
     double share = 0.0;
-    for (int i = 0; i < parts + parts % 2; i++)
-        for (int phase = 0; phase < planes + phases - 1; phase++)
-            for (int j = 0; j < SHI_SUMS; j++)
-                total[i][phase][j] = shi_splat(0.0f);
+    for (int phase = 0; phase < planes + phases - 1; phase++)
+        for (int i = 0; i < SHI_SUMS; i++)
+            total[0][phase][i] = total[1][phase][i] = shi_splat(0.0f);
     for (int x = begin; x < end; x += SHI_BLOCK) {
         const int count = end - x < SHI_BLOCK ? end - x : SHI_BLOCK, padded = (int)shi_round_up((size_t)count);
         shi_factors factors;
-        share += shi_factors_init(order, kind, size, y, x, count, interleave, &factors);
-        for (int i = 0; i < parts; i += 2) {
-            const int pair = i + 1 < parts;
-            shi_reader_use(reader, part[i].image);
-            const unsigned char *a = shi_read_block(reader, part[i].row, x, count, padded, &scratch[0]), *b = a;
-            if (pair) {
-                shi_reader_use(reader, part[i + 1].image);
-                b = shi_read_block(reader, part[i + 1].row, x, count, padded, &scratch[1]);
-            }
-            if (reader->look_for_negative)
-                group->signs = shi_or(group->signs, shi_or(shi_signs(a, padded * interleave), shi_signs(b, padded * interleave)));
-            const unsigned char *next_a = shi_part_texel(reader, part, i + 2 < parts ? i + 2 : 0, i + 2 < parts ? x : x + count);
-            const unsigned char *next_b = shi_part_texel(reader, part, i + 3 < parts ? i + 3 : pair, i + 3 < parts ? x : x + count);
-            for (int plane = 0; plane < planes; plane++)
-                shi_plane_block(order, a + (size_t)plane * SHI_BLOCK * sizeof(float), b + (size_t)plane * SHI_BLOCK * sizeof(float), next_a, next_b,
-                                padded * interleave, phases, &factors, total[i] + plane, total[i + 1] + plane);
-        }
+        share += shi_factors_init(order, SHI_OCTAHEDRON, size, y, x, count, interleave, &factors);
+        const unsigned char *a = shi_read_block(reader, y, x, count, padded, &scratch[0]), *b = a;
+        if (mirrored)
+            b = shi_read_block(reader, size - 1 - y, x, count, padded, &scratch[1]);
+        if (reader->look_for_negative)
+            group->signs = shi_or(group->signs, shi_or(shi_signs(a, padded * interleave), shi_signs(b, padded * interleave)));
+        for (int p = 0; p < planes; p++, a += SHI_BLOCK * sizeof(float), b += SHI_BLOCK * sizeof(float))
+            shi_plane_block(order, a, b, (size_t)(padded * interleave / SHI_LANES), phases, &factors, total[0] + p, total[1] + p);
     }
-    for (int i = 0; i < parts; i++)
-        for (int plane = 0; plane < planes; plane++)
-            for (int phase = 0; phase < phases; phase++)
-                shi_plane_spread(order, &part[i].plane, total[i][plane + phase], group->moment[plane + phase]);
-    return share;
-}
-
-/* Directions of u, v and the face's centre: faces +x, -x, +y, -y, +z, -z as OpenGL and Direct3D lay them out, rows from the top. */
-SHI_FUNCTION shi_plane shi_cube_plane(int face, double v) {
-    static const signed char axes[6][3][3] = {
-        { { 0, 0, -1 }, { 0, -1, 0 }, { 1, 0, 0 } }, { { 0, 0, 1 }, { 0, -1, 0 }, { -1, 0, 0 } },
-        { { 1, 0, 0 }, { 0, 0, 1 }, { 0, 1, 0 } },   { { 1, 0, 0 }, { 0, 0, -1 }, { 0, -1, 0 } },
-        { { 1, 0, 0 }, { 0, -1, 0 }, { 0, 0, 1 } },  { { -1, 0, 0 }, { 0, -1, 0 }, { 0, 0, -1 } },
-    };
-    double p[3], q[3];
-    for (int i = 0; i < 3; i++) {
-        q[i] = axes[face][0][i];
-        p[i] = axes[face][2][i] + v * axes[face][1][i];
-    }
-    return shi_plane_make(p, q);
-}
-
-/* Row y of all faces and, if `mirrored`, row size - 1 - y as well. Returns their share of the sphere. */
-SHI_INLINE double shi_cube_row(int order, shi_reader *reader, const sh_image *face, int y, int mirrored, shi_group *group) {
-    const int size = face->width;
-    const double v = (2.0 * y + 1.0 - size) / size;
-    shi_part part[SHI_PARTS];
-    int parts = 0;
-    for (int i = 0; i < 6; i++)
-        for (int side = 0; side <= mirrored; side++) {
-            part[parts].image = face + i;
-            part[parts].row = side ? size - 1 - y : y;
-            part[parts++].plane = shi_cube_plane(i, side ? -v : v);
-        }
-    return parts * shi_plane_parts(order, SHI_CUBE, reader, y, 0, size, part, parts, group);
+    for (int side = 0; side <= mirrored; side++)
+        for (int phase = 0; phase < planes + phases - 1; phase++)
+            shi_plane_spread(order, &plane[side], total[side][phase], group->moment[0][phase]);
+    return (1 + mirrored) * share;
 }
 
 /* The plane of the octahedron's row v where u has the sign `side`: within the fold, |u| + |v| <= 1, or beyond it. */
@@ -4492,18 +4737,164 @@ SHI_FUNCTION shi_plane shi_octahedron_plane(double v, int side, int beyond) {
     return shi_plane_make(p, q);
 }
 
-SHI_INLINE double shi_octahedron_row(int order, shi_reader *reader, const sh_image *image, int y, int mirrored, shi_group *group) {
-    const int size = image->width, a = 2 * y + 1 > size ? 2 * y + 1 - size : size - 2 * y - 1; /* a / size = |v| */
+SHI_INLINE double shi_octahedron_row(int order, shi_reader *reader, int y, int mirrored, shi_group *group) {
+    const int size = reader->image->width, a = 2 * y + 1 > size ? 2 * y + 1 - size : size - 2 * y - 1; /* a / size = |v| */
     const double v = (2.0 * y + 1.0 - size) / size;
     const int edge[5] = { 0, a / 2, size / 2, size - a / 2, size }; /* columns where the plane changes */
     double share = 0.0;
     for (int i = 0; i < 4; i++) {
         const int side = i < 2 ? -1 : 1, beyond = i == 0 || i == 3;
-        const shi_part part[2] = { { image, y, shi_octahedron_plane(v, side, beyond) },
-                                   { image, size - 1 - y, shi_octahedron_plane(-v, side, beyond) } };
-        share += (1 + mirrored) * shi_plane_parts(order, SHI_OCTAHEDRON, reader, y, edge[i], edge[i + 1], part, 1 + mirrored, group);
+        const shi_plane plane[2] = { shi_octahedron_plane(v, side, beyond), shi_octahedron_plane(-v, side, beyond) };
+        share += shi_octahedron_part(order, reader, y, mirrored, edge[i], edge[i + 1], plane, group);
     }
     return share;
+}
+
+/* On a cube, four rows at a time: rows v and -v of two opposite faces. With C the direction of the first face's centre, and Q and V of
+ * its u and v, the directions are (C + v V + u Q) / rho, and on the opposite face the same but for two signs: C's and Q's (faces x and
+ * z), or C's alone (faces y, once rows v and -v of the second face have changed places). So their sums and differences by v and by
+ * face need eight sums in place of twenty. One frame of axes Q, V, C for each pair of faces: */
+static const struct shi_frame {
+    signed char axis[3], sign[3]; /* of Q, V, C */
+    signed char q_flips, swapped; /* on the opposite face */
+} shi_frames[SHI_FRAMES] = {
+    { { 2, 1, 0 }, { -1, -1, 1 }, 1, 0 },
+    { { 0, 2, 1 }, { 1, 1, 1 }, 0, 1 },
+    { { 0, 1, 2 }, { 1, -1, 1 }, 1, 0 },
+};
+
+/* The eight sums, and the moments of SHI_MOMENTS in a frame, as an order is a prefix. */
+enum { SHI_F_1, SHI_F_Q, SHI_F_V, SHI_F_C, SHI_F_CC, SHI_F_CQ, SHI_F_CV, SHI_F_QV, SHI_FRAME_SUMS, SHI_F_VV = SHI_FRAME_SUMS };
+
+/* Adds a block of four rows: v and -v of the first face, v and -v of the second. */
+SHI_INLINE void shi_cube_block(int order, int q_flips, const unsigned char *const row[4], shi_next *next, size_t vectors, int phases,
+                               const shi_factors *factors, shi_v total[SHI_PHASES][SHI_FRAME_SUMS]) {
+    for (int phase = 0; phase < phases; phase++) {
+        shi_v *t = total[phase];
+        shi_v one = t[SHI_F_1], q = t[SHI_F_Q], v = t[SHI_F_V], c = t[SHI_F_C];
+        shi_v cc = t[SHI_F_CC], cq = t[SHI_F_CQ], cv = t[SHI_F_CV], qv = t[SHI_F_QV];
+        for (size_t i = (size_t)phase; i < vectors; i += (size_t)phases) {
+            const size_t at = i * sizeof(shi_v);
+            const shi_v *f = factors->table[i];
+            const shi_v a = shi_load(row[0] + at), b = shi_keep(shi_load(row[1] + at));
+            const shi_v sum_a = shi_add(a, b), difference_a = shi_sub(a, b);
+            const shi_v d = shi_load(row[2] + at), e = shi_keep(shi_load(row[3] + at));
+            const shi_v sum_b = shi_add(d, e), difference_b = shi_sub(d, e);
+            const shi_v sum_even = shi_add(sum_a, sum_b), sum_odd = shi_sub(sum_a, sum_b);
+            const shi_v difference_even = shi_add(difference_a, difference_b), difference_odd = shi_sub(difference_a, difference_b);
+            one = shi_madd(f[SHI_W], sum_even, one);
+            if (order >= SH_L1) {
+                shi_madd_two(f[SHI_WR], difference_even, sum_odd, &v, &c);
+                q = shi_madd(f[SHI_WRU], q_flips ? sum_odd : sum_even, q);
+            }
+            if (order >= SH_L2) {
+                shi_madd_two(f[SHI_WRR], sum_even, difference_odd, &cc, &cv);
+                shi_madd_two(f[SHI_WRRU], q_flips ? sum_even : sum_odd, q_flips ? difference_odd : difference_even, &cq, &qv);
+            }
+            shi_next_ask(next);
+        }
+        t[SHI_F_1] = one;
+        t[SHI_F_Q] = q;
+        t[SHI_F_V] = v;
+        t[SHI_F_C] = c;
+        t[SHI_F_CC] = cc;
+        t[SHI_F_CQ] = cq;
+        t[SHI_F_CV] = cv;
+        t[SHI_F_QV] = qv;
+    }
+}
+
+/* Adds the sums of row v to a frame's moments. */
+SHI_INLINE void shi_cube_spread(int order, float v, const shi_v s[SHI_FRAME_SUMS], shi_v moment[SHI_MOMENTS]) {
+    const shi_v v1 = shi_splat(v), v2 = shi_splat(v * v);
+    moment[SHI_F_1] = shi_add(moment[SHI_F_1], s[SHI_F_1]);
+    if (order >= SH_L1) {
+        moment[SHI_F_Q] = shi_add(moment[SHI_F_Q], s[SHI_F_Q]);
+        moment[SHI_F_V] = shi_madd(v1, s[SHI_F_V], moment[SHI_F_V]);
+        moment[SHI_F_C] = shi_add(moment[SHI_F_C], s[SHI_F_C]);
+    }
+    if (order >= SH_L2) {
+        moment[SHI_F_CC] = shi_add(moment[SHI_F_CC], s[SHI_F_CC]);
+        moment[SHI_F_CQ] = shi_add(moment[SHI_F_CQ], s[SHI_F_CQ]);
+        moment[SHI_F_CV] = shi_madd(v1, s[SHI_F_CV], moment[SHI_F_CV]);
+        moment[SHI_F_QV] = shi_madd(v1, s[SHI_F_QV], moment[SHI_F_QV]);
+        moment[SHI_F_VV] = shi_madd(v2, s[SHI_F_CC], moment[SHI_F_VV]);
+    }
+}
+
+/* Adds the block at column x of row y of a pair of faces and, if `mirrored`, of row size - 1 - y; black otherwise. */
+SHI_INLINE void shi_cube_columns(int order, shi_reader *reader, const sh_image *face, int frame, int y, int mirrored, int x, int count,
+                                 const shi_factors *factors, shi_v total[SHI_PHASES][SHI_FRAME_SUMS], shi_v *signs) {
+    static const float black[SHI_BLOCK * 4] = { 0 };
+    const struct shi_frame *f = &shi_frames[frame];
+    const int size = face->width, interleave = reader->layout.interleave, phases = shi_phases(interleave);
+    const int padded = (int)shi_round_up((size_t)count), values = padded * interleave;
+    /* Of the next rows, a block asks for two of four, for itself and its neighbour. */
+    const int beyond = mirrored && x / SHI_BLOCK % 2, ahead = beyond ? size - 2 - y : y + 1 < size ? y + 1 : y;
+    const unsigned char *row[4], *ask[2];
+    shi_scratch scratch[4];
+    for (int i = 0; i < 4; i++) {
+        const int side = i % 2 != (i / 2 && f->swapped);
+        row[i] = (const unsigned char *)black;
+        shi_reader_use(reader, face + 2 * frame + i / 2);
+        if (!side || mirrored)
+            row[i] = shi_read_block(reader, side ? size - 1 - y : y, x, count, padded, &scratch[i]);
+        if (reader->look_for_negative)
+            *signs = shi_or(*signs, shi_signs(row[i], values));
+        ask[i / 2] = shi_texel(reader, ahead, x - (beyond ? SHI_BLOCK : 0));
+    }
+    shi_next next = shi_next_from(reader, ask[0], ask[1]);
+    for (int p = 0; p < reader->layout.planes; p++) {
+        if (f->q_flips)
+            shi_cube_block(order, 1, row, &next, (size_t)(values / SHI_LANES), phases, factors, total + p);
+        else
+            shi_cube_block(order, 0, row, &next, (size_t)(values / SHI_LANES), phases, factors, total + p);
+        for (int i = 0; i < 4; i++)
+            if (row[i] != (const unsigned char *)black)
+                row[i] += SHI_BLOCK * sizeof(float);
+    }
+}
+
+/* Row y of all faces and, if `mirrored`, row size - 1 - y as well. Returns their share of the sphere. */
+SHI_INLINE double shi_cube_row(int order, shi_reader *reader, const sh_image *face, int y, int mirrored, shi_group *group) {
+    const int size = face->width, vectors = reader->layout.planes + shi_phases(reader->layout.interleave) - 1;
+    const float v = (float)((2.0 * y + 1.0 - size) / size);
+    shi_v total[SHI_FRAMES][SHI_PHASES][SHI_FRAME_SUMS];
+    double share = 0.0;
+    for (int frame = 0; frame < SHI_FRAMES; frame++)
+        for (int i = 0; i < vectors; i++)
+            for (int j = 0; j < SHI_FRAME_SUMS; j++)
+                total[frame][i][j] = shi_splat(0.0f);
+    for (int x = 0; x < size; x += SHI_BLOCK) {
+        const int count = size - x < SHI_BLOCK ? size - x : SHI_BLOCK;
+        shi_factors factors;
+        share += shi_factors_init(order, SHI_CUBE, size, y, x, count, reader->layout.interleave, &factors);
+        for (int frame = 0; frame < SHI_FRAMES; frame++)
+            shi_cube_columns(order, reader, face, frame, y, mirrored, x, count, &factors, total[frame], &group->signs);
+    }
+    for (int frame = 0; frame < SHI_FRAMES; frame++)
+        for (int i = 0; i < vectors; i++)
+            shi_cube_spread(order, v, total[frame][i], group->moment[frame][i]);
+    return 6 * (1 + mirrored) * share;
+}
+
+/* A frame's moments, in its axes, to those of SHI_MOMENTS in x, y, z, added. */
+SHI_FUNCTION void shi_frame_turn(const struct shi_frame *frame, const double m[SHI_MOMENTS], double moment[SHI_MOMENTS]) {
+    static const int pair[5][2] = { { 0, 0 }, { 0, 1 }, { 0, 2 }, { 1, 1 }, { 1, 2 } };
+    const double qq = m[SHI_F_1] - m[SHI_F_CC] - m[SHI_F_VV];
+    const double second[3][3] = { { qq, m[SHI_F_QV], m[SHI_F_CQ] },
+                                  { m[SHI_F_QV], m[SHI_F_VV], m[SHI_F_CV] },
+                                  { m[SHI_F_CQ], m[SHI_F_CV], m[SHI_F_CC] } };
+    int at[3] = { 0, 0, 0 }; /* which axis of the frame lies along x, y, z */
+    for (int i = 0; i < 3; i++)
+        at[frame->axis[i]] = i;
+    moment[SH_R0] += m[SHI_F_1];
+    for (int i = 0; i < 3; i++)
+        moment[SH_X + i] += frame->sign[at[i]] * m[SHI_F_Q + at[i]];
+    for (int i = 0; i < 5; i++) {
+        const int a = at[pair[i][0]], b = at[pair[i][1]];
+        moment[SH_XX + i] += frame->sign[a] * frame->sign[b] * second[a][b];
+    }
 }
 
 /* Adds a group's moments of one channel to the nine sums. */
@@ -4512,34 +4903,51 @@ SHI_FUNCTION void shi_plane_finish(int order, double scale, const double moment[
         accum->sum[i] += (moment[i] - (i == SH_XX || i == SH_YY ? moment[SH_R0] / 3 : 0.0)) / scale;
 }
 
+/* Rows [first, last), each together with its mirror image where that is one of the job's; where the mirror image came first, the row is
+ * done. Returns their share of the sphere. */
+SHI_INLINE double shi_plane_group(int order, int kind, shi_reader *reader, const shi_rows *job, int first, int last, shi_group *group) {
+    const int size = job->image->width, end = job->first + job->count;
+    double share = 0.0;
+    for (int y = first; y < last; y++) {
+        const int mirror = size - 1 - y, mirrored = mirror > y && mirror < end;
+        if (mirror >= job->first && mirror < y)
+            continue;
+        share += kind == SHI_CUBE ? shi_cube_row(order, reader, job->image, y, mirrored, group)
+                                  : shi_octahedron_row(order, reader, y, mirrored, group);
+    }
+    return share;
+}
+
 SHI_INLINE int shi_plane_rows(int order, int kind, const shi_rows *job) {
-    const int images = kind == SHI_CUBE ? 6 : 1, size = job->image->width, end = job->first + job->count;
+    const int images = kind == SHI_CUBE ? 6 : 1, frames = kind == SHI_CUBE ? SHI_FRAMES : 1, end = job->first + job->count;
     shi_reader reader;
     const int status = shi_reader_init(job->image, images, job->flags, job->report, &reader);
     if (status != SH_OK)
         return status;
     if (job->image->width != job->image->height)
         return SH_ERROR_SIZE;
-    for (int y = job->first; y < end; y++) {
-        const int mirror = size - 1 - y, mirrored = mirror > y && mirror < end;
+    /* Lanes share what rounding does to a long sum. An octahedral map has one in place of a cube's three times eight. */
+    const int group_rows = kind == SHI_CUBE && SHI_LANES > 1 ? SHI_GROUP : 1;
+    for (int y = job->first; y < end; y += group_rows) {
+        const int last = end - y < group_rows ? end : y + group_rows;
         const sh_report before = reader.report;
-        double moment[3][SHI_MOMENTS] = { { 0 } }, share = 0.0;
-        if (mirror >= job->first && mirror < y)
-            continue; /* done with its mirror image */
+        double moment[SHI_FRAMES][3][SHI_MOMENTS] = { { { 0 } } }, share = 0.0;
         for (int attempt = 0; attempt < SHI_ATTEMPTS; attempt++) {
             shi_group group;
-            shi_group_begin(&reader, attempt, &before, &group);
-            share = kind == SHI_CUBE ? shi_cube_row(order, &reader, job->image, y, mirrored, &group)
-                                     : shi_octahedron_row(order, &reader, job->image, y, mirrored, &group);
+            shi_group_begin(&reader, attempt, &before, frames, &group);
+            share = shi_plane_group(order, kind, &reader, job, y, last, &group);
             if (shi_group_end(order, &reader, &group, moment))
                 break;
         }
         for (int k = 0; k < reader.layout.channels; k++) {
-            shi_plane_finish(order, (double)reader.scale, moment[k], job->accum + k);
+            double turned[SHI_MOMENTS] = { 0 };
+            for (int f = 0; kind == SHI_CUBE && f < frames; f++)
+                shi_frame_turn(&shi_frames[f], moment[f][k], turned);
+            shi_plane_finish(order, (double)reader.scale, kind == SHI_CUBE ? turned : moment[0][k], job->accum + k);
             job->accum[k].weight += share;
         }
     }
-    shi_report_add(&reader, (uint64_t)images * (uint64_t)job->count * (uint64_t)size, job->report);
+    shi_report_add(&reader, (uint64_t)images * (uint64_t)job->count * (uint64_t)job->image->width, job->report);
     return SH_OK;
 }
 SHI_FUNCTION int shi_cube_rows_l0(const shi_rows *job) { return shi_plane_rows(SH_L0, SHI_CUBE, job); }
@@ -4595,7 +5003,7 @@ SHI_INLINE shi_i shi_as_int(shi_v a) {
     return shi_iload32(lanes);
 }
 
-/* log2 of normal a > 0, error < 3e-7 for a in [1/2, 1], else 1 ulp: a = 2^e m, m in [1, 2), and log2 m = 1/2 + 2 atanh(s) / ln 2
+/* log2 of normal a > 0, error < 2e-7 for a in [1/2, 1], else 2 ulp: a = 2^e m, m in [1, 2), and log2 m = 1/2 + 2 atanh(s) / ln 2
  * for s = (m - sqrt 2) / (m + sqrt 2), |s| < .172, by its series up to s^7. */
 SHI_INLINE shi_v shi_log2(shi_v a) {
     const shi_i bits = shi_as_int(a);
@@ -4646,10 +5054,9 @@ SHI_INLINE shi_v shi_dot_v(shi_v ax, shi_v ay, shi_v az, shi_v x, shi_v y, shi_v
     return shi_madd(ax, x, shi_madd(ay, y, shi_mul(az, z)));
 }
 
-/* scale times: the even part, clamped to [max(|v|, lower), sqrt(upper)], and v. */
+/* scale times: the even part, clamped to [lower, sqrt(upper)], and v. */
 SHI_INLINE shi_v shi_clamped_v(const shi_model *m, shi_v v, shi_v even, shi_v lower, shi_v upper) {
-    const shi_v top = shi_sqrt(shi_max(upper, shi_splat(0.0f)));
-    return shi_mul(m->scale, shi_add(shi_max(shi_min(even, top), shi_max(shi_abs(v), lower)), v));
+    return shi_mul(m->scale, shi_add(shi_max(shi_min(even, shi_sqrt(upper)), lower), v));
 }
 
 /* shi_evaluate_model, for a literal model. */
@@ -4657,7 +5064,7 @@ SHI_INLINE shi_v shi_model_v(int model, const shi_model *m, shi_v x, shi_v y, sh
     const shi_v *k = m->even, *a = m->r2, v = shi_dot_v(m->r1[0], m->r1[1], m->r1[2], x, y, z), zero = shi_splat(0.0f);
     if (model == SHI_GEOMERICS) {
         const shi_v q = shi_max(shi_min(shi_add(v, shi_splat(0.5f)), shi_splat(1.0f)), zero);
-        return shi_mul(m->scale, shi_madd(k[1], shi_power(q, k[2]), k[0]));
+        return shi_mul(m->scale, shi_madd(k[1], shi_power(q, k[2]), shi_add(k[0], shi_sub(v, v)))); /* v - v: NaN stays */
     }
     if (model == SHI_ZH3)
         return shi_max(zero, shi_mul(m->scale, shi_madd(v, shi_madd(k[2], v, k[1]), k[0])));
@@ -4666,7 +5073,7 @@ SHI_INLINE shi_v shi_model_v(int model, const shi_model *m, shi_v x, shi_v y, sh
         if (model == SHI_CLOSURE_L1)
             return shi_mul(m->scale, shi_add(shi_madd(shi_madd(shi_add(t, k[2]), t, k[1]), t, k[0]), v));
         const shi_v even = shi_madd(shi_madd(shi_madd(shi_splat(3003.0f / 65536.0f), t, k[2]), t, k[1]), t, k[0]);
-        return shi_clamped_v(m, v, even, zero, shi_add(k[3], t));
+        return shi_clamped_v(m, v, even, shi_abs(v), shi_add(k[3], t));
     }
     const shi_v ax = shi_dot_v(a[0], a[1], a[2], x, y, z), ay = shi_dot_v(a[1], a[3], a[4], x, y, z);
     const shi_v az = shi_dot_v(a[2], a[4], a[5], x, y, z), q = shi_dot_v(ax, ay, az, x, y, z);
@@ -4676,9 +5083,10 @@ SHI_INLINE shi_v shi_model_v(int model, const shi_model *m, shi_v x, shi_v y, sh
     const shi_v outer = shi_madd(shi_splat(-819.0f / 256.0f), q, shi_splat(15.0f / 16.0f));
     const shi_v inner = shi_madd(shi_madd(shi_splat(3003.0f / 1024.0f), q, shi_splat(-105.0f / 64.0f)), q, k[1]);
     const shi_v even = shi_madd(aa, outer, shi_madd(q, inner, k[0]));
+    const shi_v lower = shi_max(shi_abs(v), m2);
     if (model == SHI_CLOSURE_L2)
-        return shi_mul(m->scale, shi_add(shi_max(even, shi_max(shi_abs(v), m2)), v));
-    return shi_clamped_v(m, v, even, m2, shi_mul(k[2], m2));
+        return shi_mul(m->scale, shi_add(shi_max(even, lower), v));
+    return shi_clamped_v(m, v, even, lower, shi_max(shi_mul(k[2], m2), zero));
 }
 
 SHI_INLINE void shi_model_loop(int model, const sh_closure *p, const float *x, const float *y, const float *z, float *out,

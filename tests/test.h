@@ -44,8 +44,10 @@
 /* Two objects of `size` bytes, bit for bit. */
 #define SAME_BITS(actual, expected, size) CHECK(memcmp((actual), (expected), (size)) == 0)
 
-/* What each program defines. */
+/* What each program defines, unless it brings its own main and defines TEST_OWN_MAIN before it includes this. */
+#ifndef TEST_OWN_MAIN
 static void run_tests(void);
+#endif
 
 enum { TEST_MAX_PRINTED = 20 };
 
@@ -71,6 +73,9 @@ static inline int test_count(int passed, const char *file, int line) {
     }
     if (++test_state.failed > TEST_MAX_PRINTED)
         return 0;
+#ifdef TEST_STOP_AT_FAILURE /* where nobody reads on */
+    exit(1);
+#endif
     printf("%s:%d: [%s] ", file, line, test_state.section);
     return 1;
 }
@@ -164,6 +169,7 @@ static inline void test_dirty_stack(void) {
     write();
 }
 
+#ifndef TEST_OWN_MAIN
 int main(void) {
     test_seed(1);
     run_tests();
@@ -172,5 +178,6 @@ int main(void) {
     printf("%ld passed, %ld failed\n", test_state.passed, test_state.failed);
     return test_state.passed > 0 && test_state.failed == 0 ? 0 : 1;
 }
+#endif
 
 #endif /* TEST_H */

@@ -85,7 +85,7 @@ static void test_pairs(long pairs) {
 
 /* Where the bounds close: a single direction. Where they are known: ambient light, and what no light has. */
 static void test_cases(void) {
-    const float ambient[9] = { 2.0f }, black[9] = { 0 }, negative[9] = { -1.0f, 0.5f }, more[9] = { 1.0f, 3.0f };
+    const float ambient[9] = { 2.0f }, black[9] = { 0 }, negative[9] = { -1.0f, 0.9f }, more[9] = { 1.0f, 3.0f };
     float lo, hi, n[3], c[9];
     test_section("cases");
     for (int i = 0; i < 1000; i++) {
@@ -96,14 +96,21 @@ static void test_cases(void) {
         sh_irradiance_bounds(SH_L1, ambient, n, &lo, &hi);
         NEAR(lo, 0.0, 0.0);
         NEAR(hi, 4.0, 1e-5);
+        sh_irradiance_bounds(SH_L0, ambient, n, &lo, &hi);
+        NEAR(lo, 0.0, 0.0);
+        NEAR(hi, 8.0, 1e-6);
         for (int order = SH_L0; order <= SH_L2; order++) {
             sh_irradiance_bounds(order, black, n, &lo, &hi);
             CHECK(lo == 0.0f && hi == 0.0f);
             sh_irradiance_bounds(order, negative, n, &lo, &hi);
-            CHECK(lo == hi && lo >= 0.0f);
+            CHECK(lo == hi && lo == fmaxf(0.0f, sh_irradiance(order, negative, n)));
             sh_irradiance_bounds(order, more, n, &lo, &hi);
             CHECK(lo <= hi && lo >= 0.0f);
         }
+        /* <t^2> is negative along x, where n'R2 n is below -1/3 R0. */
+        const float impossible[9] = { 1.0f, 0, 0, 0, -0.6f, 0, 0, 0.2f, 0 }, x[3] = { 1, 0, 0 };
+        sh_irradiance_bounds(SH_L2, impossible, x, &lo, &hi);
+        CHECK(lo == hi);
         float d[3];
         test_direction(d);
         memset(c, 0, sizeof c);

@@ -5,6 +5,7 @@
 
 #include "envs.h"
 #include "lights.h"
+#include "oracle.h"
 #include "sh.h"
 
 enum { MODELS = 8, NORMALS = 1000 };
@@ -26,6 +27,15 @@ static void evaluate(const float c[9], const float n[3], float out[MODELS]) {
     out[7] = sh_closure_irradiance(SH_L2, &closure, n);
 }
 
+/* On a Fibonacci spiral about the y axis. */
+static void panorama_normal(uint32_t i, float n[3]) {
+    float dir[3];
+    sh_direction_fibonacci(i, NORMALS, dir);
+    n[0] = dir[0];
+    n[1] = dir[2];
+    n[2] = -dir[1];
+}
+
 static void panorama_errors(const envs_light *light, double mean[MODELS], double *largest) {
     float c[3][9];
     double square[3][MODELS] = { { 0 } };
@@ -34,7 +44,7 @@ static void panorama_errors(const envs_light *light, double mean[MODELS], double
     for (uint32_t i = 0; i < NORMALS; i++) {
         float n[3], model[MODELS];
         double truth[3];
-        sh_direction_fibonacci(i, NORMALS, n);
+        panorama_normal(i, n);
         envs_irradiance(light, n, truth);
         for (int k = 0; k < 3; k++) {
             evaluate(c[k], n, model);
@@ -56,7 +66,7 @@ static void panorama_errors(const envs_light *light, double mean[MODELS], double
 
 static void test_panoramas(void) {
     static const char *const name[6] = { "city", "esplanade", "hall", "night", "studio", "sunset" };
-    static const double expected[MODELS] = { 0.2063, 0.1452, 0.1479, 0.1431, 0.0370, 0.0344, 0.0226, 0.02305 };
+    static const double expected[MODELS] = { 0.2063, 0.1452, 0.1479, 0.1431, 0.0370, 0.0344, 0.0226, 0.0230 };
     static envs_light light;
     const char *dir = getenv("SH_ENVS") ? getenv("SH_ENVS") : SH_ENVS_DIR;
     double mean[MODELS] = { 0 }, largest[MODELS] = { 0 };
@@ -106,7 +116,7 @@ static void test_directional(void) {
     }
     printf("one direction: error of the closures %.3g %.3g %.3g\n", worst[0], worst[1], worst[2]);
     for (int m = 0; m < 3; m++)
-        CHECK(worst[m] <= 1e-6);
+        CHECK(worst[m] <= 4e-7);
 }
 
 /* Every batch of one set, against its scalar function. */
@@ -294,7 +304,7 @@ static void test_fallbacks(void) {
     sh_closure floor;
     for (int i = 0; i < 20000; i++) {
         const float unit = scale[test_below(6)];
-        const int kind = test_below(6);
+        const int kind = test_below(7);
         test_section("fallback %d, scale %g", kind, (double)unit);
         test_direction(n);
         memset(c, 0, sizeof c);
@@ -321,6 +331,13 @@ static void test_fallbacks(void) {
                 c[k] *= 0.9f;
             test_direction(n);
             break;
+        case 5: /* R2 of any magnitude, whose minors cancel: the more so where the compiler fuses */
+            test_fill(c, 9, -1.0, 1.0);
+            c[0] = 1.0f;
+            for (int k = 4; k < 9; k++)
+                if (k == 4 || test_below(3))
+                    c[k] = powf(10.0f, (float)(2 + i % 17)) * (k == 4 || test_below(2) ? 1.0f : -1.0f);
+            break;
         default:
             break; /* black */
         }
@@ -330,7 +347,7 @@ static void test_fallbacks(void) {
         CHECK(is_fallback(c, n, SH_L2, sh_irradiance_closure(SH_L2, c, n)));
         CHECK(is_fallback(c, n, SH_L2, sh_closure_irradiance(SH_L2, &floor, n)));
         CHECK(is_fallback(c, n, SH_L0, sh_irradiance_closure(SH_L0, c, n)));
-        if (kind < 3 || kind == 5) {
+        if (kind < 3 || kind == 6) {
             CHECK(is_fallback(c, n, SH_L1, sh_irradiance_closure(SH_L1, c, n)));
             CHECK(is_fallback(c, n, SH_L1, sh_irradiance_geomerics(c, n)));
             CHECK(is_fallback(c, n, SH_L1, sh_irradiance_zh3(c, n)));
@@ -442,7 +459,91 @@ static void test_sizes(void) {
     }
 }
 
+/* ---- The models by their definitions, in long double, of light that is not negative ---- */
+
+static long double geomerics_of(const long double c[9], const long double n[3]) {
+    const long double length = sqrtl(oracle_dot(c + SH_X, c + SH_X)), r = length / c[0], a = (1 - r) / (1 + r), p = 1 + 2 * r;
+    return c[0] * (a + (1 - a) * (p + 1) * powl((1 + oracle_dot(c + SH_X, n) / length) / 2, p));
+}
+
+static long double zh3_of(const long double c[9], const long double n[3]) {
+    const long double length = sqrtl(oracle_dot(c + SH_X, c + SH_X)), r = length / c[0], t = oracle_dot(c + SH_X, n) / length;
+    return fmaxl(0, c[0] * (1 + 2 * r * t + 15 / 8.0L * (0.0619677L * r + 0.804984L * r * r) * (t * t - 1 / 3.0L)));
+}
+
+/* Bands 0, 2, 4 and 6 of the cosine kernel, as factors under convolution. */
+static const long double even_factor[4] = { 1.0L, 1 / 4.0L, -1 / 24.0L, 1 / 64.0L };
+
+/* The even part within the bounds, in units of the light without its constant part. */
+typedef struct even_part {
+    long double lower, upper, free;
+} even_part;
+
+static void near_closure(float actual, long double r0, long double unit, const even_part *even, long double v) {
+    const int above = even->free > even->upper;
+    const long double within = fmaxl(above ? even->upper : even->free, even->lower);
+    NEAR(actual, unit * (within + 2 * v), above ? fmaxl(2e-6L, 1.2e-6L * r0 / (unit * even->upper)) * r0 : 2e-6L * r0);
+}
+
+/* Band l of a Henyey-Greenstein lobe of mean cosine r is r^l. */
+static void near_closure_l1(float actual, const long double c[9], const long double n[3]) {
+    const long double length = sqrtl(oracle_dot(c + SH_X, c + SH_X)), r = length / c[0], v = oracle_dot(c + SH_X, n) / c[0], t = v / r;
+    even_part even = { 2 * fabsl(v), 2 * sqrtl(fmaxl(0, 1 - r * r + v * v)), 0 };
+    for (int i = 0; i < 4; i++)
+        even.free += even_factor[i] * (4 * i + 1) * powl(r, 2 * i) * oracle_legendre(2 * i, t);
+    near_closure(actual, c[0], c[0], &even, v);
+}
+
+/* Bands 4 and 6 of the light but for its constant part are those of q^2 and q^3, q the form of R2, as the moments of one direction
+ * would have it: (2l + 1)!! / l! times band l of the function of w is the light's. */
+static void near_closure_l2(float actual, const oracle_rule *rule, const long double c[9], long double ambient, const long double n[3]) {
+    const long double w = c[0] - ambient, q = oracle_quadratic(c, n) / w, v = oracle_dot(c + SH_X, n) / w;
+    long double t4 = 0, t6 = 0;
+    for (size_t i = 0; i < rule->count; i++) {
+        const long double *to = rule->node[i].dir, form = oracle_quadratic(c, to) / w;
+        const long double t = oracle_dot(n, to);
+        t4 += rule->node[i].weight * 9 * form * form * oracle_legendre(4, t);
+        t6 += rule->node[i].weight * 13 * form * form * form * oracle_legendre(6, t);
+    }
+    const long double g = c[0] / w, square = q + g / 3;
+    const even_part even = { 2 * fmaxl(fabsl(v), square), 2 * sqrtl(g * fmaxl(0, square)),
+                             g + 15 / 8.0L * q + even_factor[2] * 945 / 24 * t4 + even_factor[3] * 135135 / 720 * t6 };
+    near_closure(actual, c[0], w, &even, v);
+}
+
+static void test_definitions(void) {
+    oracle_rule rule = oracle_rule_sphere(14);
+    for (int i = 0; i < 4000; i++) {
+        float c[9] = { 0 }, d[3], n[3];
+        long double wide[9], normal[3];
+        sh_closure floor;
+        /* From nearly ambient to one direction and nearly that; and scattered lights. */
+        const double part = i % 3 ? test_uniform(0.0, 1.0) : exp(test_uniform(-8.0, 0.0));
+        for (int k = i % 4 ? 1 : 4; k > 0; k--) {
+            test_direction(d);
+            sh_add_sample(SH_L2, d, (float)(1.0 - part), c);
+        }
+        c[0] += (float)part;
+        test_direction(n);
+        sh_closure_prepare(SH_L2, 1, c, SH_AMBIENT_FLOOR, &floor);
+        for (int k = 0; k < 9; k++)
+            wide[k] = (long double)c[k];
+        for (int k = 0; k < 3; k++)
+            normal[k] = (long double)n[k];
+        const long double ambient = fmaxl(0, (long double)sh_ambient_floor(c)), scale = wide[0];
+        test_section("models by their definitions, %d", i);
+        NEAR(sh_irradiance_geomerics(c, n), geomerics_of(wide, normal), 2e-6L * scale);
+        NEAR(sh_irradiance_zh3(c, n), zh3_of(wide, normal), 2e-6L * scale);
+        near_closure_l1(sh_irradiance_closure(SH_L1, c, n), wide, normal);
+        near_closure_l2(sh_irradiance_closure(SH_L2, c, n), &rule, wide, 0, normal);
+        if (scale - ambient > 0.01L * scale)
+            near_closure_l2(sh_closure_irradiance(SH_L2, &floor, n), &rule, wide, ambient, normal);
+    }
+    oracle_rule_free(&rule);
+}
+
 static void run_tests(void) {
+    test_definitions();
     test_directional();
     test_ambient();
     test_fallbacks();

@@ -65,8 +65,12 @@ static void round_trip(conversion to, conversion from, const char *name) {
             float c[9], there[9], back[9];
             test_section("round trip of %s, order %d", name, order);
             test_fill(c, 9, -scales[i % 3], scales[i % 3]);
+            for (int j = 0; j < 9; j++)
+                there[j] = back[j] = 7.0f;
             to(order, c, there);
             from(order, there, back);
+            for (int j = SH_COUNT(order); j < 9; j++)
+                CHECK(there[j] == 7.0f && back[j] == 7.0f);
             check_band(back, c, 0, 1);
             if (order >= SH_L1)
                 check_band(back, c, 1, 4);
@@ -123,6 +127,31 @@ static void directx(void) {
                                      0.546274215296039590 * (x * x - y * y) };
         for (int k = 0; k < 9; k++)
             NEAR(f[k], 4.0 * 3.14159265358979 * expected[k], 5e-6);
+    }
+}
+
+/* Unreal's SHBasisFunction of three bands, in its left-handed axes with z up. */
+static void unreal(void) {
+    static const int axis[3] = { 1, -2, 3 };
+    for (int i = 0; i < 100; i++) {
+        float c[9] = { 0 }, f[9], dir[3];
+        test_section("Unreal");
+        test_direction(dir);
+        sh_add_sample(SH_L2, dir, 1.0f, c);
+        sh_swap_axes(SH_L2, c, axis, c);
+        sh_to_orthonormal(SH_L2, c, SH_CONDON_SHORTLEY, f);
+        const double x = (double)dir[0], y = -(double)dir[1], z = (double)dir[2];
+        const double expected[9] = { 0.282095,
+                                     -0.488603 * y,
+                                     0.488603 * z,
+                                     -0.488603 * x,
+                                     1.092548 * x * y,
+                                     -1.092548 * y * z,
+                                     0.315392 * (3.0 * z * z - 1.0),
+                                     -1.092548 * x * z,
+                                     0.546274 * (x * x - y * y) };
+        for (int k = 0; k < 9; k++)
+            NEAR(f[k], 4.0 * 3.14159265358979 * expected[k], 2e-5);
     }
 }
 
@@ -224,6 +253,7 @@ static void run_tests(void) {
     round_trip(sh_to_unity, sh_from_unity, "unity");
     three();
     directx();
+    unreal();
     unity();
     babylon();
     layouts();

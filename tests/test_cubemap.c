@@ -1,5 +1,5 @@
 /* Cube maps: order and orientation of the faces, and what square maps have in common. */
-#include "square.h"
+#include "square_maps.h"
 
 static int project(int order, const sh_image *face, unsigned flags, float *c, sh_report *report) {
     return sh_project_cubemap(order, face, flags, c, report);
@@ -9,36 +9,7 @@ static int project_rows(int order, const sh_image *face, unsigned flags, int fir
     return sh_project_cubemap_rows(order, face, flags, first, count, accum, report);
 }
 
-/* OpenGL 4.6, table 8.19, of direction (rx, ry, rz): s = (sc / |ma| + 1) / 2 runs along rows, t = (tc / |ma| + 1) / 2 along columns.
- *
- *     face  sc   tc   ma
- *     +x    -rz  -ry  rx
- *     -x    +rz  -ry  rx
- *     +y    +rx  +rz  ry
- *     -y    +rx  -rz  ry
- *     +z    +rx  -ry  rz
- *     -z    -rx  -ry  rz
- */
-static const struct {
-    int sc_axis, sc_sign, tc_axis, tc_sign, ma_axis, ma_sign;
-} faces[6] = {
-    { 2, -1, 1, -1, 0, 1 }, { 2, 1, 1, -1, 0, -1 }, { 0, 1, 2, 1, 1, 1 },
-    { 0, 1, 2, -1, 1, -1 }, { 0, 1, 1, -1, 2, 1 },  { 0, -1, 1, -1, 2, -1 },
-};
-
-static void point(int face, long double u, long double v, long double at[3]) {
-    at[faces[face].sc_axis] = faces[face].sc_sign * u;
-    at[faces[face].tc_axis] = faces[face].tc_sign * v;
-    at[faces[face].ma_axis] = faces[face].ma_sign;
-}
-
-/* A rectangle of a face is plane: two triangles. */
-static long double share(long double u0, long double u1, long double v0, long double v1) {
-    const long double a[3] = { u0, v0, 1.0L }, b[3] = { u1, v0, 1.0L }, c[3] = { u1, v1, 1.0L }, d[3] = { u0, v1, 1.0L };
-    return square_triangle(a, b, c) + square_triangle(a, c, d);
-}
-
-static const square_map cube = { "cube map", 6, project, project_rows, point, share, 1e-6L, 1 };
+static const square_map cube = { "cube map", 6, project, project_rows, cube_point, cube_share, 1e-6L, 1 };
 
 /* The closed form: the solid angle from the middle of a face to (u, v) is atan(u v / sqrt(1 + u^2 + v^2)). */
 static long double strip(long double v) {

@@ -268,8 +268,28 @@ static void azimuth(void) {
     CHECK(c[SH_X] < -0.1f && c[SH_Y] < -0.1f);
 }
 
+/* Rows whose weights are sums of fewer terms than half their number, since there are few texels in them: L = 1 + z + z^2 is exact
+ * still, and a column of a million takes no minutes. */
+static void narrow(void) {
+    enum { HEIGHT = 1 << 16 };
+    float *pixels = (float *)test_allocate(HEIGHT * sizeof *pixels);
+    const sh_image image = { pixels, 1, HEIGHT, 0, 1, SH_F32 };
+    const double expected[9] = { 4.0 / 3, 0, 0, 1.0 / 3, -2.0 / 45, 0, 0, -2.0 / 45, 0 };
+    float c[9];
+    test_section("narrow point texels");
+    for (int y = 0; y < HEIGHT; y++) {
+        const double z = cos((double)oracle_pi * (y + 0.5) / (double)HEIGHT);
+        pixels[y] = (float)(1.0 + z + z * z);
+    }
+    EQUAL(sh_project_equirect(SH_L2, &image, SH_POINT_TEXELS, c, NULL), SH_OK);
+    for (int i = 0; i < 9; i++)
+        NEAR(c[i], expected[i], 1e-6);
+    free(pixels);
+}
+
 static void run_tests(void) {
     azimuth();
+    narrow();
     constants();
     sizes();
     layouts();

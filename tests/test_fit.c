@@ -129,7 +129,7 @@ static void undetermined(void) {
 }
 
 static void errors(void) {
-    float c[9], before[9], none[MOST] = { 0 };
+    float c[9], before[9], none[MOST] = { 0 }, indefinite[MOST] = { -5.0f, 2.0f, 2.0f, 2.0f, 2.0f };
     test_section("errors write nothing");
     test_fill(c, 9, -1.0, 1.0);
     measure(SH_L2, 1, 20, -1.0, radiance, c);
@@ -140,6 +140,7 @@ static void errors(void) {
     EQUAL(sh_fit_samples(SH_L2, 1, x, y, z, NULL, NULL, 20, NULL, 0.0f, c), SH_ERROR_ARGUMENT);
     EQUAL(sh_fit_samples(SH_L2, 1, x, y, z, value, NULL, 0, NULL, 0.0f, c), SH_ERROR_ARGUMENT);
     EQUAL(sh_fit_samples(SH_L2, 1, x, y, z, value, none, 20, NULL, 0.0f, c), SH_ERROR_ARGUMENT);
+    EQUAL(sh_fit_samples(SH_L2, 1, x, y, z, value, indefinite, 20, NULL, 0.0f, c), SH_ERROR_ARGUMENT);
     EQUAL(sh_fit_samples(SH_L2, 1, x, y, z, value, NULL, 20, NULL, -1.0f, c), SH_ERROR_ARGUMENT);
     EQUAL(sh_fit_samples(SH_L2, 1, x, y, z, value, NULL, 20, NULL, nanf(""), c), SH_ERROR_ARGUMENT);
     EQUAL(sh_fit_samples(SH_L2, 1, x, y, z, value, NULL, 20, NULL, 0.0f, NULL), SH_ERROR_ARGUMENT);

@@ -221,7 +221,7 @@ static void skipping(void) {
     enum { COUNT = 200 };
     float light[4 * COUNT], radiance[3 * COUNT];
     for (int i = 0; i < 20; i++) {
-        float all[27] = { 0 }, some[27] = { 0 };
+        float all[27] = { 0 }, each[27] = { 0 }, some[27] = { 0 };
         const float tolerance = (float)(1e-4 * (1 << i % 8));
         test_section("skipped spheres, tolerance %g", (double)tolerance);
         test_fill(light, 4 * COUNT, -30.0, 30.0);
@@ -229,6 +229,10 @@ static void skipping(void) {
         for (int k = 0; k < COUNT; k++)
             light[4 * k + 3] = (float)test_uniform(0.0, 0.2);
         EQUAL(sh_add_spheres(SH_L2, 3, light, radiance, COUNT, -1.0f, all), COUNT);
+        for (int k = 0; k < COUNT; k++)
+            sh_add_sphere(SH_L2, 3, light + 4 * k, light[4 * k + 3], SH_RADIANCE, radiance + 3 * k, each);
+        for (int channel = 0; channel < 3; channel++)
+            NEAR_ALL(all + 9 * channel, each + 9 * channel, 9, 1e-6 * (double)all[9 * channel]);
         const size_t added = sh_add_spheres(SH_L2, 3, light, radiance, COUNT, tolerance, some);
         CHECK(added < COUNT);
         for (int k = 0; k < 200; k++) {
@@ -240,6 +244,23 @@ static void skipping(void) {
             }
         }
     }
+}
+
+/* What was skipped counts against what may be: half of the tolerance, then nine tenths. */
+static void skipping_budget(void) {
+    const float light[8] = { 0, 0, 10, 1, 0, 10, 0, 1 }, bound = 17.0f / 1600.0f;
+    const float radiance[2] = { 0.49f / bound, 0.9f / bound }, negative[2] = { 0.0f, -1.0f };
+    float c[9] = { 0 };
+    test_section("skipped spheres share the tolerance");
+    EQUAL(sh_add_spheres(SH_L2, 1, light, radiance, 2, 1.0f, c), 1);
+    EQUAL(sh_add_spheres(SH_L2, 1, light + 4, radiance + 1, 1, 1.0f, c), 0);
+    test_section("skipped spheres by the magnitude of the brightest channel");
+    EQUAL(sh_add_spheres(SH_L2, 2, light, negative, 1, 1.0004f * bound, c), 0);
+    EQUAL(sh_add_spheres(SH_L2, 1, light, negative + 1, 1, 0.9996f * bound, c), 1);
+    const float dim = 0.25f, bright_first[2] = { 100.0f, 0.9f / bound };
+    EQUAL(sh_add_spheres(SH_L2, 1, light, &dim, 1, 0.26f * bound, c), 0);
+    EQUAL(sh_add_spheres(SH_L2, 1, light, &dim, 1, 0.24f * bound, c), 1);
+    EQUAL(sh_add_spheres(SH_L2, 1, light, bright_first, 2, 1.0f, c), 1);
 }
 
 /* The bound of sh_add_spheres: a cap's reconstruction at its centre over sin^2, for each order. */
@@ -256,6 +277,45 @@ static void reconstruction_bound(void) {
                 test_direction(n);
                 CHECK(fabsf(sh_irradiance(order, c, k ? n : z)) <= 17.0f / 16.0f * 1.000001f);
             }
+        }
+}
+
+static void add_everything(int order, float *c) {
+    static const float dir[3] = { 0.36f, 0.48f, -0.8f }, u[3] = { 0.3f, -0.1f, 0.2f }, v[3] = { -0.2f, 0.5f, 0.1f };
+    static const float far_end[3] = { -1.0f, 0.7f, 2.0f }, value[3] = { 0.3f, 1.7f, 12.3f }, lambert[3] = { 1.0f, 2.0f / 3.0f, 0.25f };
+    sh_add_ambient(order, 3, value, c);
+    sh_add_directional(order, 3, dir, value, c);
+    sh_add_hemisphere(order, 3, dir, value, dir, c);
+    sh_add_cap(order, 3, dir, 0.7f, SH_RADIANCE, value, c);
+    sh_add_sphere(order, 3, far_end, 0.4f, SH_IRRADIANCE, value, c);
+    sh_add_vmf(order, 3, dir, 3.0f, SH_RADIANCE, value, c);
+    sh_add_rectangle(order, 3, dir, u, v, value, c);
+    sh_add_disk(order, 3, far_end, dir, 0.3f, value, c);
+    sh_add_segment(order, 3, dir, far_end, 0.01f, value, c);
+    for (int k = 0; k < 3; k++)
+        sh_zonal_add(order, lambert, dir, value[k], c + k * SH_COUNT(order));
+}
+
+/* GCC fuses products and sums across statements unless told to follow ISO C, in one order and not in another. */
+#if defined(FP_FAST_FMAF) && defined(__GNUC__) && !defined(__clang__) && (defined(__cplusplus) || !defined(__STRICT_ANSI__))
+static const long double prefix_tolerance = 1e-5L;
+#else
+static const long double prefix_tolerance = 0.0L;
+#endif
+
+/* Whatever they are computed on, the bits of an order are the first of a higher one. Values are below 32. */
+static void prefix(void) {
+    float full[27], lower[27], before[27];
+    test_section("an order is a prefix");
+    for (int order = SH_L0; order < SH_L2; order++)
+        for (int i = 0; i < 50; i++) {
+            test_fill(before, 27, -1.0, 1.0);
+            memcpy(full, before, sizeof full);
+            sh_truncate(SH_L2, 3, before, order, lower);
+            add_everything(SH_L2, full);
+            add_everything(order, lower);
+            sh_truncate(SH_L2, 3, full, order, full);
+            NEAR_ALL(lower, full, 3 * SH_COUNT(order), prefix_tolerance);
         }
 }
 
@@ -289,6 +349,8 @@ static void run_tests(void) {
     spheres();
     lobes();
     skipping();
+    skipping_budget();
     reconstruction_bound();
+    prefix();
     extremes();
 }

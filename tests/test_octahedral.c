@@ -1,5 +1,5 @@
 /* Octahedral maps: orientation, texels cut by an axis or the fold, what square maps have in common; and one light in all three maps. */
-#include "square.h"
+#include "square_maps.h"
 
 static int project(int order, const sh_image *image, unsigned flags, float *c, sh_report *report) {
     return sh_project_octahedral(order, image, flags, c, report);
@@ -9,68 +9,7 @@ static int project_rows(int order, const sh_image *image, unsigned flags, int fi
     return sh_project_octahedral_rows(order, image, flags, first, count, accum, report);
 }
 
-static void point(int image, long double u, long double v, long double at[3]) {
-    const long double a = fabsl(u), b = fabsl(v);
-    (void)image;
-    at[2] = 1.0L - a - b;
-    at[0] = at[2] >= 0.0L ? u : u < 0.0L ? b - 1.0L : 1.0L - b;
-    at[1] = at[2] >= 0.0L ? v : v < 0.0L ? a - 1.0L : 1.0L - a;
-}
-
-/* ---- The share of a rectangle: cut along the axes and the fold, each piece is plane ---- */
-
-enum { MOST_CORNERS = 8 };
-
-typedef struct polygon {
-    int count;
-    long double corner[MOST_CORNERS][2];
-} polygon;
-
-/* What lies where a u + b v <= c. Sutherland and Hodgman. */
-static polygon clip(const polygon *p, long double a, long double b, long double c) {
-    polygon out;
-    out.count = 0;
-    for (int i = 0; i < p->count; i++) {
-        const long double *from = p->corner[i], *to = p->corner[(i + 1) % p->count];
-        const long double d0 = c - a * from[0] - b * from[1], d1 = c - a * to[0] - b * to[1];
-        if (d0 >= 0.0L) {
-            out.corner[out.count][0] = from[0];
-            out.corner[out.count++][1] = from[1];
-        }
-        if ((d0 > 0.0L && d1 < 0.0L) || (d0 < 0.0L && d1 > 0.0L)) {
-            out.corner[out.count][0] = from[0] + (to[0] - from[0]) * d0 / (d0 - d1);
-            out.corner[out.count++][1] = from[1] + (to[1] - from[1]) * d0 / (d0 - d1);
-        }
-    }
-    return out;
-}
-
-/* A plane piece, by a fan of triangles. */
-static long double piece_share(const polygon *p) {
-    long double sum = 0.0L;
-    for (int i = 2; i < p->count; i++) {
-        long double a[3], b[3], c[3];
-        point(0, p->corner[0][0], p->corner[0][1], a);
-        point(0, p->corner[i - 1][0], p->corner[i - 1][1], b);
-        point(0, p->corner[i][0], p->corner[i][1], c);
-        sum += square_triangle(a, b, c);
-    }
-    return sum;
-}
-
-static long double share(long double u0, long double u1, long double v0, long double v1) {
-    const polygon whole = { 4, { { u0, v0 }, { u1, v0 }, { u1, v1 }, { u0, v1 } } };
-    long double sum = 0.0L;
-    for (int quadrant = 0; quadrant < 4; quadrant++) {
-        const long double su = quadrant & 1 ? -1.0L : 1.0L, sv = quadrant & 2 ? -1.0L : 1.0L;
-        const polygon half = clip(&whole, -su, 0.0L, 0.0L), part = clip(&half, 0.0L, -sv, 0.0L);
-        const polygon upper = clip(&part, su, sv, 1.0L), lower = clip(&part, -su, -sv, -1.0L);
-        sum += piece_share(&upper) + piece_share(&lower);
-    }
-    return sum;
-}
-
-static const square_map octahedral = { "octahedral map", 1, project, project_rows, point, share, 5e-6L, 0 };
+static const square_map octahedral = { "octahedral map", 1, project, project_rows, octahedron_point, octahedron_share, 5e-6L, 0 };
 
 /* The middle is +z, the corners are -z; u points to +x, v to +y. */
 static void orientation(void) {
@@ -120,17 +59,6 @@ static int project_cube(int order, const sh_image *face, unsigned flags, float *
     return sh_project_cubemap(order, face, flags, c, report);
 }
 
-/* Axes of columns, rows and middle of each face. */
-static void cube_point(int face, long double u, long double v, long double at[3]) {
-    static const signed char axes[6][3][3] = {
-        { { 0, 0, -1 }, { 0, -1, 0 }, { 1, 0, 0 } }, { { 0, 0, 1 }, { 0, -1, 0 }, { -1, 0, 0 } },
-        { { 1, 0, 0 }, { 0, 0, 1 }, { 0, 1, 0 } },   { { 1, 0, 0 }, { 0, 0, -1 }, { 0, -1, 0 } },
-        { { 1, 0, 0 }, { 0, -1, 0 }, { 0, 0, 1 } },  { { -1, 0, 0 }, { 0, -1, 0 }, { 0, 0, -1 } },
-    };
-    for (int i = 0; i < 3; i++)
-        at[i] = u * axes[face][0][i] + v * axes[face][1][i] + axes[face][2][i];
-}
-
 static void agreement(void) {
     const square_map cube = { "cube map", 6, project_cube, NULL, cube_point, NULL, 0.0L, 1 };
     for (int size = 32; size <= 128; size *= 2) {
@@ -157,8 +85,8 @@ static void agreement(void) {
 
 static void run_tests(void) {
     test_section("the octahedron's share");
-    NEAR(share(-1.0L, 1.0L, -1.0L, 1.0L), 1.0, 1e-14);
-    NEAR(share(0.0L, 1.0L, 0.0L, 1.0L), 0.25, 1e-14);
+    NEAR(octahedron_share(-1.0L, 1.0L, -1.0L, 1.0L), 1.0, 1e-14);
+    NEAR(octahedron_share(0.0L, 1.0L, 0.0L, 1.0L), 0.25, 1e-14);
     orientation();
     border();
     agreement();

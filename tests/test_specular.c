@@ -92,7 +92,21 @@ static void probe(void) {
     }
 }
 
+/* What comes from the mirror and what goes to the eye add up along the normal. */
+static void reflection(void) {
+    test_section("reflection");
+    for (int repeat = 0; repeat < 100; repeat++) {
+        float view[3], n[3], r[3];
+        test_direction(view);
+        test_direction(n);
+        sh_reflect(view, n, r);
+        for (int i = 0; i < 3; i++)
+            NEAR(r[i] + view[i], 2 * (n[0] * view[0] + n[1] * view[1] + n[2] * view[2]) * n[i], 5e-7);
+    }
+}
+
 static void run_tests(void) {
     kernels();
+    reflection();
     probe();
 }

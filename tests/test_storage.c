@@ -142,6 +142,17 @@ static void half_values(void) {
         CHECK((double)shi_from_half((uint16_t)(h | 0x8000)) == -expected);
         CHECK(shi_to_half((float)expected) == h);
         CHECK(shi_to_half((float)-expected) == (h | 0x8000));
+        if (h < 0x0800) { /* the nearest, just below and above the middle to the next */
+            CHECK(shi_to_half((float)((h + 0.4999) / 16777216.0)) == h);
+            CHECK(shi_to_half((float)((h + 0.5001) / 16777216.0)) == h + 1);
+        }
+    }
+    test_section("between halves");
+    for (int h = 0; h < 0x7bff; h++) {
+        const float middle = 0.5f * (shi_from_half((uint16_t)h) + shi_from_half((uint16_t)(h + 1)));
+        CHECK(shi_to_half(nextafterf(middle, 0.0f)) == h);
+        CHECK(shi_to_half(middle) == h + h % 2);
+        CHECK(shi_to_half(nextafterf(middle, 1e9f)) == h + 1);
     }
 }
 

@@ -192,6 +192,22 @@ static void loads_and_stores(void) {
     }
 }
 
+/* Memory of exactly eight lanes, or of a vector where it has fewer. */
+static void eights(void) {
+    enum { LANES = SHI_LANES < 8 ? SHI_LANES : 8, SIZE = LANES * 4 };
+    unsigned char *from = (unsigned char *)test_allocate(SIZE), *to = (unsigned char *)test_allocate(SIZE);
+    unsigned char all[SHI_LANES * 4], zero[SHI_LANES * 4] = { 0 };
+    test_section("load8 and store8");
+    random_floats(from, LANES);
+    shi_store8(to, shi_load8(from));
+    check_words(to, from, LANES);
+    shi_store(all, shi_load8(from));
+    check_words(all, from, LANES);
+    SAME_BITS(all + SIZE, zero, sizeof all - SIZE);
+    free(from);
+    free(to);
+}
+
 /* Lane i is item i, `stride` bytes further; items may overlap, and have any address. */
 static void load_fours(void) {
     static const size_t strides[] = { 4, 8, 12, 13, 16, 17, 20, 36, 63, 256 };
@@ -214,30 +230,38 @@ static void load_fours(void) {
         }
 }
 
-/* The first n floats of each item are written, and not a byte beside them. */
-static void store_fours(void) {
+/* Three floats of each item are written, and not a byte beside them. */
+static void store_threes(void) {
     static const size_t gaps[] = { 0, 1, 3, 4, 16, 100 };
-    for (int n = 1; n <= 4; n++)
-        for (size_t g = 0; g < sizeof gaps / sizeof gaps[0]; g++)
-            for (size_t offset = 0; offset < 4; offset++) {
-                const size_t item = 4 * (size_t)n, stride = item + gaps[g], size = offset + (SHI_LANES - 1) * stride + item;
-                unsigned char *actual = (unsigned char *)test_allocate(size), *expected = (unsigned char *)test_allocate(size);
-                float in[4][SHI_LANES];
-                shi_v v[4];
-                test_section("store4 of %d, stride %d, offset %d", n, (int)stride, (int)offset);
-                memset(actual, 0xa5, size);
-                memset(expected, 0xa5, size);
-                for (size_t j = 0; j < 4; j++) {
-                    test_fill(in[j], SHI_LANES, -1.0, 1.0);
-                    v[j] = shi_load(in[j]);
-                    for (size_t i = 0; i < SHI_LANES && j < (size_t)n; i++)
-                        memcpy(expected + offset + i * stride + 4 * j, &in[j][i], 4);
-                }
-                shi_store4(actual + offset, stride, n, v);
-                SAME_BITS(actual, expected, size);
-                free(actual);
-                free(expected);
+    for (size_t g = 0; g < sizeof gaps / sizeof gaps[0]; g++)
+        for (size_t offset = 0; offset < 4; offset++) {
+            const size_t item = 4 * 3, stride = item + gaps[g], size = offset + (SHI_LANES - 1) * stride + item;
+            unsigned char *actual = (unsigned char *)test_allocate(size), *expected = (unsigned char *)test_allocate(size);
+            float in[3][SHI_LANES];
+            test_section("store3, stride %d, offset %d", (int)stride, (int)offset);
+            memset(actual, 0xa5, size);
+            memset(expected, 0xa5, size);
+            for (size_t j = 0; j < 3; j++) {
+                test_fill(in[j], SHI_LANES, -1.0, 1.0);
+                for (size_t i = 0; i < SHI_LANES; i++)
+                    memcpy(expected + offset + i * stride + 4 * j, &in[j][i], 4);
             }
+            shi_store3(actual + offset, stride, shi_load(in[0]), shi_load(in[1]), shi_load(in[2]));
+            SAME_BITS(actual, expected, size);
+            free(actual);
+            free(expected);
+        }
+}
+
+/* What only steers the compiler or the cache changes no value. */
+static void hints(void) {
+    float in[4 * SHI_LANES], out[SHI_LANES];
+    test_section("keep, hide, prefetch");
+    test_fill(in, SHI_LANES, -1.0, 1.0);
+    shi_store(out, shi_keep(shi_load(in)));
+    SAME_BITS(out, in, sizeof out);
+    CHECK(shi_hide(12345) == 12345);
+    shi_prefetch((const unsigned char *)in);
 }
 
 /* ---- Integers ---- */
@@ -268,7 +292,7 @@ static void integer_loads(void) {
         for (size_t i = 0; i < SHI_LANES; i++) {
             const uint64_t bits = test_bits();
             const uint16_t low = (uint16_t)bits;
-            half[i] = low;
+            half[i] = low & 0x8000 ? low | 0xffff0000u : low;
             word[i] = (uint32_t)(bits >> 16);
             memcpy(halves + offset + 2 * i, &low, sizeof low);
             memcpy(words + offset + 4 * i, &word[i], sizeof word[i]);
@@ -281,6 +305,24 @@ static void integer_loads(void) {
         free(halves);
         free(words);
     }
+}
+
+/* Every lane, ends of the ranges and a subnormal; all halves are in the test of texels. */
+static void half_loads(void) {
+#if defined(SHI_HAS_HALF)
+    static const uint16_t half[] = { 0x3c00, 0xc000, 0x0001, 0x7bff, 0x8400, 0x03ff, 0x0000 };
+    static const float value[] = { 1.0f, -2.0f, 1.0f / 16777216, 65504.0f, -1.0f / 16384, 1023.0f / 16777216, 0.0f };
+    test_section("load_half");
+    for (size_t first = 0; first < 7; first++) {
+        uint16_t in[SHI_LANES];
+        float out[SHI_LANES];
+        for (size_t i = 0; i < SHI_LANES; i++)
+            in[i] = half[(first + i) % 7];
+        shi_store(out, shi_load_half(in));
+        for (size_t i = 0; i < SHI_LANES; i++)
+            SAME_BITS(&out[i], &value[(first + i) % 7], sizeof out[i]);
+    }
+#endif
 }
 
 static void integer_arithmetic(void) {
@@ -351,9 +393,12 @@ static void run_tests(void) {
     for (size_t i = 0; i < sizeof operations / sizeof operations[0]; i++)
         check_operation(&operations[i]);
     loads_and_stores();
+    eights();
     load_fours();
-    store_fours();
+    store_threes();
+    hints();
     integer_loads();
+    half_loads();
     integer_arithmetic();
     repeat_three();
     transpose_four();

@@ -77,14 +77,16 @@ static void cones(void) {
         for (int l = 0; l < 3; l++)
             RELATIVE(zonal[l], oracle_zonal_moment(l, lambert, NULL, 1.0L - gap, 1.0L), kernel_tolerance);
     }
-    test_section("limits of a cone");
-    sh_zonal_ao(1.0f, zonal);
-    NEAR(zonal[0] + zonal[1] + zonal[2], 0.0, 0);
-    sh_zonal_cap(1.0f, zonal);
-    NEAR(zonal[0] + zonal[1] + zonal[2], 0.0, 0);
-    sh_zonal_cap(-1.0f, zonal);
-    NEAR(zonal[0], 1.0, 0);
-    NEAR(fabsf(zonal[1]) + fabsf(zonal[2]), 0.0, 0);
+    test_section("limits of a cone, and a cosine rounded beyond them");
+    for (float limit = 1.0f; limit < 1.2f; limit += 0.1f) {
+        sh_zonal_ao(limit, zonal);
+        NEAR(zonal[0] + zonal[1] + zonal[2], 0.0, 0);
+        sh_zonal_cap(limit, zonal);
+        NEAR(zonal[0] + zonal[1] + zonal[2], 0.0, 0);
+        sh_zonal_cap(-limit, zonal);
+        NEAR(zonal[0], 1.0, 0);
+        NEAR(fabsf(zonal[1]) + fabsf(zonal[2]), 0.0, 0);
+    }
 }
 
 /* Moderate sharpness by quadrature, small by the leading terms of the series, large by the closed form without its exponentials:
