@@ -5,6 +5,7 @@
 
 #include "../tests/envs.h"
 #include "bench_eval.h"
+#include "bench_svg.h"
 
 enum { MODELS_COUNT = 8, MODELS_NORMALS = 1024, MODELS_LIGHTS = 6 };
 
@@ -116,66 +117,141 @@ static inline void models_analytic(int which, envs_light *light) {
     }
 }
 
-/* The fastest of many turns. */
+/* The fastest of many turns, each long enough for a slow clock. */
 static inline double models_time(int which, const models_chart *chart) {
+    enum { TURNS = 60, CALLS = 256 };
     double fastest = 1e30;
     float c[27];
     eval_light(SH_L2, 0, c);
-    for (int turn = 0; turn < 200; turn++) {
+    for (int turn = 0; turn < TURNS; turn++) {
         const double start = bench_now();
-        for (int i = 0; i < 8; i++)
+        for (int i = 0; i < CALLS; i++)
             models_run(which, c, chart);
-        const double seconds = (bench_now() - start) / (8 * (int)MODELS_NORMALS);
+        const double seconds = (bench_now() - start) / (CALLS * (int)MODELS_NORMALS);
         fastest = seconds < fastest ? seconds : fastest;
     }
     return 1e9 * fastest;
 }
 
-/* Logarithmic in time, linear in error. */
-static inline void models_write(const models_chart *chart, FILE *file) {
-    double slowest = 1.0, largest = 0.0;
+/* ---- The chart: logarithmic both ways, its points labelled directly ------------------------------------------------------------- */
+
+enum { MODELS_WIDTH = 800, MODELS_HEIGHT = 500, MODELS_X0 = 70, MODELS_X1 = 770, MODELS_Y0 = 440, MODELS_Y1 = 88 };
+
+/* What the axes begin and end with. */
+typedef struct models_axes {
+    double fastest, slowest, least, largest;
+} models_axes;
+
+static inline double models_x(const models_axes *axes, double ns) {
+    return MODELS_X0 + log(ns / axes->fastest) / log(axes->slowest / axes->fastest) * (MODELS_X1 - MODELS_X0);
+}
+
+static inline double models_y(const models_axes *axes, double error) {
+    return MODELS_Y0 - log(error / axes->least) / log(axes->largest / axes->least) * (MODELS_Y0 - MODELS_Y1);
+}
+
+static inline models_axes models_enclose(const models_chart *chart) {
+    models_axes axes = { 0.5, 1.0, 0.5, 1.0 };
     for (int i = 0; i < MODELS_COUNT; i++) {
-        slowest = chart->entry[i].ns > slowest ? chart->entry[i].ns : slowest;
-        largest = chart->entry[i].error > largest ? chart->entry[i].error : largest;
+        axes.fastest = fmin(axes.fastest, 0.8 * chart->entry[i].ns);
+        axes.slowest = fmax(axes.slowest, 2.0 * chart->entry[i].ns);
+        axes.least = fmin(axes.least, 0.8 * chart->entry[i].error);
+        axes.largest = fmax(axes.largest, 1.1 * chart->entry[i].error);
     }
-    const double x0 = 70, x1 = 730, y0 = 430, y1 = 50, low = log10(0.1), high = log10(slowest) + 0.25, top = 1.1 * largest;
-    fprintf(file,
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 800 490\" font-family=\"sans-serif\" font-size=\"13\">\n"
-            "<rect width=\"800\" height=\"490\" fill=\"white\"/>\n"
-            "<text x=\"70\" y=\"28\" font-size=\"16\">Models of irradiance: mean RMS error over %d channels of lights, against "
-            "time (%s)</text>\n"
-            "<text x=\"400\" y=\"478\" text-anchor=\"middle\">ns per RGB normal</text>\n"
-            "<text x=\"18\" y=\"240\" text-anchor=\"middle\" transform=\"rotate(-90 18 240)\">RMS error / R0</text>\n",
-            chart->channels, SH_SIMD_NAME);
-    for (double t = 0.1; log10(t) < high; t *= 10.0)
-        for (int m = 1; m <= 5; m += m == 1 ? 1 : 3) {
-            const double x = x0 + (log10(t * m) - low) / (high - low) * (x1 - x0);
-            if (x <= x1 + 1)
-                fprintf(
-                    file,
-                    "<path d=\"M%.1f %.1fV%.1f\" stroke=\"#ddd\"/><text x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\">%g</text>\n",
-                    x, y0, y1, x, y0 + 20, t * m);
+    return axes;
+}
+
+static inline void models_grid(FILE *file, const models_axes *axes) {
+    char text[32];
+    for (double decade = 1e-4; decade < 1e4; decade *= 10.0)
+        for (int digit = 1; digit <= 5; digit += digit == 1 ? 1 : 3) {
+            const double value = digit * decade, x = models_x(axes, value), y = models_y(axes, value);
+            snprintf(text, sizeof text, "%g", value);
+            if (x >= MODELS_X0 && x <= MODELS_X1) {
+                svg_line(file, x, MODELS_Y0, x, MODELS_Y1, "stroke=\"#e4e4e4\"");
+                svg_text(file, x, MODELS_Y0 + 18, "text-anchor=\"middle\" fill=\"#555555\"", text);
+            }
+            if (y <= MODELS_Y0 && y >= MODELS_Y1) {
+                svg_line(file, MODELS_X0, y, MODELS_X1, y, "stroke=\"#e4e4e4\"");
+                svg_text(file, MODELS_X0 - 8, y + 4, "text-anchor=\"end\" fill=\"#555555\"", text);
+            }
         }
-    for (int i = 0; i * 0.1 <= top; i++) {
-        const double y = y0 - i * 0.1 / top * (y0 - y1);
-        fprintf(file, "<path d=\"M%.1f %.1fH%.1f\" stroke=\"#ddd\"/><text x=\"%.1f\" y=\"%.1f\" text-anchor=\"end\">%.1f</text>\n",
-                x0, y, x1, x0 - 8, y + 4, i * 0.1);
+    svg_text(file, (MODELS_X0 + MODELS_X1) / 2, MODELS_Y0 + 42, "text-anchor=\"middle\"",
+             "ns per RGB normal, of a batch of 1024 (left is faster)");
+    fprintf(file, "<g transform=\"translate(20 %d) rotate(-90)\">", (MODELS_Y0 + MODELS_Y1) / 2);
+    svg_text(file, 0, 0, "text-anchor=\"middle\"", "RMS error, relative to R0 (down is more accurate)");
+    fputs("</g>\n", file);
+}
+
+/* Whether no model is faster and more accurate than model i. */
+static inline int models_on_front(const models_chart *chart, int i) {
+    for (int j = 0; j < MODELS_COUNT; j++)
+        if (chart->entry[j].ns < chart->entry[i].ns && chart->entry[j].error < chart->entry[i].error)
+            return 0;
+    return 1;
+}
+
+/* A name and, below it, the numbers. On the left of the point where another point is close on its right. */
+static inline void models_label(FILE *file, const models_chart *chart, const models_axes *axes, int i) {
+    const models_entry *e = &chart->entry[i];
+    const double x = models_x(axes, e->ns), y = models_y(axes, e->error);
+    int left = x > MODELS_X1 - 120;
+    for (int j = 0; j < MODELS_COUNT; j++) {
+        const double dx = models_x(axes, chart->entry[j].ns) - x, dy = models_y(axes, chart->entry[j].error) - y;
+        left |= dx > 0.0 && dx < 120.0 && fabs(dy) < 30.0;
+    }
+    const char *outline = "stroke=\"white\" stroke-width=\"3\" paint-order=\"stroke\"";
+    char text[64], style[192];
+    snprintf(style, sizeof style, "text-anchor=\"%s\" %s font-weight=\"bold\" fill=\"%s\"", left ? "end" : "start", outline,
+             strstr(e->name, "closure") ? "#c2410c" : "#1e3a5f");
+    svg_text(file, left ? x - 10 : x + 10, y - 1, style, e->name);
+    snprintf(style, sizeof style, "text-anchor=\"%s\" %s fill=\"#555555\" font-size=\"11\"", left ? "end" : "start", outline);
+    snprintf(text, sizeof text, "%.3f, %.2f ns%s", e->error, e->ns, strstr(e->name, "bounded") ? ", no batch" : "");
+    svg_text(file, left ? x - 10 : x + 10, y + 12, style, text);
+}
+
+/* The line joins the models that no other is better than in both respects. */
+static inline void models_write(const models_chart *chart, int envs, FILE *file) {
+    const models_axes axes = models_enclose(chart);
+    char text[160];
+    fprintf(file,
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %d %d\" font-family=\"Helvetica, Arial, sans-serif\" "
+            "font-size=\"13\">\n<rect width=\"100%%\" height=\"100%%\" fill=\"white\"/>\n",
+            MODELS_WIDTH, MODELS_HEIGHT);
+    svg_text(file, MODELS_X0, 30, "font-size=\"17\" font-weight=\"bold\"", "Models of irradiance: run time against error");
+    snprintf(text, sizeof text, "Mean of %d channels, of %d analytic lights and %d panoramas. %s, one thread.", chart->channels,
+             MODELS_LIGHTS, envs, SH_SIMD_NAME);
+    svg_text(file, MODELS_X0, 50, "fill=\"#555555\"", text);
+    svg_text(file, MODELS_X0, 67, "fill=\"#555555\"", "Joined: no other model is both faster and more accurate.");
+    models_grid(file, &axes);
+    double before_x = 0.0, before_y = 0.0;
+    for (double ns = 0.0;;) {
+        int next = -1;
+        for (int i = 0; i < MODELS_COUNT; i++)
+            if (models_on_front(chart, i) && chart->entry[i].ns > ns && (next < 0 || chart->entry[i].ns < chart->entry[next].ns))
+                next = i;
+        if (next < 0)
+            break;
+        const double x = models_x(&axes, chart->entry[next].ns), y = models_y(&axes, chart->entry[next].error);
+        if (ns > 0.0)
+            svg_line(file, before_x, before_y, x, y, "stroke=\"#c9a27e\" stroke-width=\"1.5\" stroke-dasharray=\"2 3\"");
+        before_x = x;
+        before_y = y;
+        ns = chart->entry[next].ns;
     }
     for (int i = 0; i < MODELS_COUNT; i++) {
         const models_entry *e = &chart->entry[i];
-        const double x = x0 + (log10(e->ns) - low) / (high - low) * (x1 - x0), y = y0 - e->error / top * (y0 - y1);
-        const int closure = strstr(e->name, "closure") != NULL, right = x > x1 - 100;
-        fprintf(file, "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"5\" fill=\"%s\"/>", x, y, closure ? "#c2410c" : "#1d4ed8");
-        fprintf(file, "<text x=\"%.1f\" y=\"%.1f\"%s>%s %.3f</text>\n", right ? x : x + 8, closure ? y + 15 : y - 7,
-                right ? " text-anchor=\"middle\"" : "", e->name, e->error);
+        fprintf(file, "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"5\" fill=\"%s\"/>\n", models_x(&axes, e->ns), models_y(&axes, e->error),
+                strstr(e->name, "closure") ? "#c2410c" : "#1e3a5f");
+        models_label(file, chart, &axes, i);
     }
     fprintf(file, "</svg>\n");
 }
 
 /* Draws the chart and prints its numbers; 0, or the index + 1 of a panorama that cannot be read. */
 static inline int bench_models(FILE *file, const char *const *env, int env_count) {
-    static const char *const name[MODELS_COUNT] = { "L0",        "L1 linear",           "ZH3",       "Geomerics", "L1 closure",
-                                                    "L2 linear", "L2 bounded (scalar)", "L2 closure" };
+    static const char *const name[MODELS_COUNT] = { "L0",         "L1 linear", "ZH3",        "Geomerics",
+                                                    "L1 closure", "L2 linear", "L2 bounded", "L2 closure" };
     static envs_light light;
     models_chart chart;
     memset(&chart, 0, sizeof chart);
@@ -204,7 +280,7 @@ static inline int bench_models(FILE *file, const char *const *env, int env_count
         e->ns = models_time(i, &chart);
         printf("%-20s %10.3f %16.4f\n", e->name, e->ns, e->error);
     }
-    models_write(&chart, file);
+    models_write(&chart, env_count, file);
     bench_free_all();
     return 0;
 }

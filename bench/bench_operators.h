@@ -124,10 +124,12 @@ static inline void operator_light(int kind, const float dir[3], const float rgb[
     }
 }
 
-SHI_INLINE void operator_lights(int kind, operator_data *d, size_t n) {
-    memset(d->out, 0, OP_PROBES * OP_RGB * sizeof(float));
+SHI_INLINE void operator_lights(int kind, const operator_data *d, size_t n) {
+    const float *dirs = d->dirs, *rgbs = d->rgbs;
+    float *out = d->out; /* the compiler cannot know that no light is added to *d */
+    memset(out, 0, OP_PROBES * OP_RGB * sizeof(float));
     for (size_t i = 0; i < n; i++)
-        operator_light(kind, d->dirs + 3 * i, d->rgbs + 3 * i, d->out + i % OP_PROBES * OP_RGB);
+        operator_light(kind, dirs + 3 * i, rgbs + 3 * i, out + i % OP_PROBES * OP_RGB);
 }
 
 static inline void operator_run(bench_case *test) {
@@ -262,11 +264,22 @@ static inline void operator_baseline(bench_case *test) {
 
 /* ---- Errors ---- */
 
-static inline double operator_difference(const float *c, const long double *expected, int count) {
+/* The largest difference from `expected`, as a part of `scale`. */
+static inline double operator_difference(const float *c, const long double *expected, int count, long double scale) {
     double worst = 0.0;
     for (int i = 0; i < count; i++)
-        worst = bench_worse(worst, (double)(fabsl((long double)c[i] - expected[i]) / fabsl(expected[0])));
+        worst = bench_worse(worst, (double)(fabsl((long double)c[i] - expected[i]) / scale));
     return worst;
+}
+
+/* Root mean square of the radiance reconstruction of a set. */
+static inline long double operator_norm(const float *a) {
+    long double c[9];
+    oracle_widen(a, 9, c);
+    const long double zz = -(c[SH_XX] + c[SH_YY]);
+    const long double second = c[SH_XX] * c[SH_XX] + c[SH_YY] * c[SH_YY] + zz * zz;
+    const long double rest = c[SH_XY] * c[SH_XY] + c[SH_XZ] * c[SH_XZ] + c[SH_YZ] * c[SH_YZ];
+    return sqrtl(c[SH_R0] * c[SH_R0] + 3.0L * oracle_dot(c + SH_X, c + SH_X) + 7.5L * (second + 2.0L * rest));
 }
 
 /* One channel of `set`; inputs a, and b for products. */
@@ -298,7 +311,7 @@ static inline void operator_expected(int kind, const operator_data *d, const flo
     oracle_rule_free(&rule);
 }
 
-/* The first sets of a map from sets to sets. */
+/* The first sets of a map from sets to sets; relative to the norms of what it maps. */
 static inline double operator_map_error(bench_case *test, int of_baseline) {
     operator_data *d = (operator_data *)test->data;
     const int product = test->kind == OP_PRODUCT || test->kind == OP_PRODUCT_BATCH;
@@ -324,50 +337,67 @@ static inline double operator_map_error(bench_case *test, int of_baseline) {
             out = lane[2];
         }
         operator_expected(test->kind, d, a, b, expected);
-        worst = bench_worse(worst, operator_difference(out, expected, 9));
+        const long double scale = operator_norm(a) * (product ? operator_norm(b) : 1.0L);
+        worst = bench_worse(worst, operator_difference(out, expected, 9, scale));
     }
     return worst;
 }
 
-/* The sum of the probes that the lights were added to, against caps by quadrature and polygons by samples. */
+/* The moments of a light of radiance 1, or irradiance / pi 1 for a directional one. */
+static inline void operator_expected_lobe(int kind, const float *light, long double c[9]) {
+    const long double r = (long double)operator_radius;
+    long double dir[3], k[3] = { 0.25L, 0.25L, 0.25L };
+    if (kind != OP_DIRECTIONAL) {
+        const long double angle = (long double)operator_cap(light), cosine = kind == OP_CAP ? cosl(angle) : sqrtl(1.0L - r * r);
+        k[0] = (1.0L - cosine) / 2.0L;
+        k[1] = (1.0L - cosine * cosine) / 4.0L;
+        k[2] = cosine * k[1];
+    }
+    oracle_widen(light, 3, dir);
+    oracle_basis(dir, c);
+    for (int j = 0; j < 9; j++)
+        c[j] *= k[j < 1 ? 0 : j < 4 ? 1 : 2];
+}
+
+/* The same of a rectangle, by Gauss-Legendre quadrature over its area. */
+static inline void operator_expected_quad(const float *dir, long double c[9]) {
+    enum { NODES = 24 };
+    long double node[NODES], weight[NODES], wide[3][3], n[3];
+    float quad[3][3];
+    operator_quad(dir, quad[0], quad[1], quad[2]);
+    for (int i = 0; i < 3; i++)
+        oracle_widen(quad[i], 3, wide[i]);
+    for (int j = 0; j < 3; j++)
+        n[j] = wide[1][(j + 1) % 3] * wide[2][(j + 2) % 3] - wide[1][(j + 2) % 3] * wide[2][(j + 1) % 3];
+    oracle_gauss(NODES, -1.0L, 1.0L, node, weight);
+    memset(c, 0, 9 * sizeof *c);
+    for (int s = 0; s < NODES; s++)
+        for (int t = 0; t < NODES; t++) {
+            long double p[3], basis[9];
+            for (int j = 0; j < 3; j++)
+                p[j] = wide[0][j] + node[s] * wide[1][j] + node[t] * wide[2][j];
+            const long double length = sqrtl(oracle_dot(p, p));
+            const long double mean = weight[s] * weight[t] * fabsl(oracle_dot(p, n)) / (4.0L * oracle_pi * length * length * length);
+            for (int j = 0; j < 3; j++)
+                p[j] /= length;
+            oracle_basis(p, basis);
+            for (int j = 0; j < 9; j++)
+                c[j] += mean * basis[j];
+        }
+}
+
+/* Of the sum of the probes that the lights were added to; relative to its R0. */
 static inline double operator_light_error(bench_case *test, int of_baseline) {
     operator_data *d = (operator_data *)test->data;
-    const long double r = (long double)operator_radius;
-    long double sum[9] = { 0 };
+    long double sum[9] = { 0 }, one[9];
     float c[OP_RGB];
     for (size_t i = 0; i < test->items; i++) {
-        long double dir[3], basis[9], k[3] = { 0.25L, 0.25L, 0.25L };
-        oracle_widen(d->dirs + 3 * i, 3, dir);
-        oracle_basis(dir, basis);
-        if (test->kind != OP_DIRECTIONAL) {
-            const long double angle = (long double)operator_cap(d->dirs + 3 * i);
-            const long double cosine = test->kind == OP_CAP ? cosl(angle) : sqrtl(1.0L - r * r);
-            k[0] = (1.0L - cosine) / 2.0L;
-            k[1] = (1.0L - cosine * cosine) / 4.0L;
-            k[2] = cosine * k[1];
-        }
-        if (test->kind != OP_POLYGON)
-            for (int j = 0; j < 9; j++)
-                sum[j] += (long double)d->rgbs[3 * i] * k[j < 1 ? 0 : j < 4 ? 1 : 2] * basis[j];
+        if (test->kind == OP_POLYGON)
+            operator_expected_quad(d->dirs + 3 * i, one);
         else
-            for (int s = 0; s < 64; s++)
-                for (int t = 0; t < 64; t++) {
-                    float center[3], u[3], v[3];
-                    long double p[3], n[3];
-                    operator_quad(d->dirs + 3 * i, center, u, v);
-                    for (int j = 0; j < 3; j++) {
-                        p[j] = (long double)center[j] + (s - 31.5L) / 32.0L * (long double)u[j] + (t - 31.5L) / 32.0L * (long double)v[j];
-                        n[j] = (long double)u[(j + 1) % 3] * (long double)v[(j + 2) % 3] -
-                               (long double)u[(j + 2) % 3] * (long double)v[(j + 1) % 3];
-                    }
-                    const long double length = sqrtl(oracle_dot(p, p));
-                    const long double mean = fabsl(oracle_dot(p, n)) / (1024.0L * length * length * length) / (4.0L * oracle_pi);
-                    for (int j = 0; j < 3; j++)
-                        p[j] /= length;
-                    oracle_basis(p, basis);
-                    for (int j = 0; j < 9; j++)
-                        sum[j] += (long double)d->rgbs[3 * i] * mean * basis[j];
-                }
+            operator_expected_lobe(test->kind, d->dirs + 3 * i, one);
+        for (int j = 0; j < 9; j++)
+            sum[j] += (long double)d->rgbs[3 * i] * one[j];
     }
     for (int p = 1; p < OP_PROBES; p++)
         for (int j = 0; j < OP_RGB; j++) {
@@ -376,7 +406,7 @@ static inline double operator_light_error(bench_case *test, int of_baseline) {
         }
     if (of_baseline)
         engine_to_moments(SH_L2, d->engine_out, 1.0, c);
-    return operator_difference(of_baseline ? c : d->out, sum, 9);
+    return operator_difference(of_baseline ? c : d->out, sum, 9, sum[0]);
 }
 
 /* Of what is decoded; the baselines' codes have no decoder. */
@@ -392,7 +422,7 @@ static inline double operator_pack_error(bench_case *test, int of_baseline) {
         if (test->kind == OP_UNORM8)
             sh_unpack_unorm8(SH_L2, 3, d->r0 + 3 * i, d->code + 24 * i, c);
         for (int k = 0; k < 3; k++)
-            worst = bench_worse(worst, operator_difference(c + 9 * k, expected + 9 * k, 9));
+            worst = bench_worse(worst, operator_difference(c + 9 * k, expected + 9 * k, 9, expected[9 * k]));
     }
     return worst;
 }
@@ -408,13 +438,13 @@ static inline void bench_operator_cases(bench_list *list) {
     } all[] = {
         { OP_ROTATE, "op/rotate/L2/rgb", "3x3 and 5x5 matrix", 27, 1e-6 },
         { OP_ROTATE_SINGLE, "op/rotate_one/L2/rgb", "3x3 and 5x5 matrix", 27, 1e-6 },
-        { OP_PRODUCT, "op/product/L2", "729 factors", 9, 1e-5 },
-        { OP_PRODUCT_BATCH, "op/product_batch/L2", "729 factors", 9, 1e-5 },
+        { OP_PRODUCT, "op/product/L2", "729 factors", 9, 1e-6 },
+        { OP_PRODUCT_BATCH, "op/product_batch/L2", "729 factors", 9, 1e-6 },
         { OP_CONVOLVE, "op/convolve/L2/rgb", "factor per coefficient", 27, 1e-6 },
-        { OP_DIRECTIONAL, "light/directional/L2/rgb", "basis", 0, 1e-5 },
-        { OP_CAP, "light/cap/L2/rgb", "basis times bands", 0, 1e-5 },
-        { OP_SPHERE, "light/sphere/L2/rgb", "basis times bands", 0, 1e-5 },
-        { OP_POLYGON, "light/polygon4/L2/rgb", "64 samples", 0, 1e-4 },
+        { OP_DIRECTIONAL, "light/directional/L2/rgb", "basis", 0, 1e-6 },
+        { OP_CAP, "light/cap/L2/rgb", "basis times bands", 0, 1e-6 },
+        { OP_SPHERE, "light/sphere/L2/rgb", "basis times bands", 0, 1e-6 },
+        { OP_POLYGON, "light/polygon4/L2/rgb", "64 samples", 0, 1e-6 },
         { OP_HALF, "pack/half/L2/rgb", "round each", 14, 1e-3 },
         { OP_UNORM8, "pack/unorm8/L2/rgb", "round each", 9, 2e-2 },
     };

@@ -86,7 +86,7 @@ static inline void svg_label(const char *name, char *label, size_t size) {
             from += 4;
         if (!*from)
             break;
-        label[n++] = *from == '/' ? ' ' : *from;
+        label[n++] = (char)(*from == '/' ? ' ' : *from);
     }
     label[n] = '\0';
 }

@@ -2,7 +2,7 @@
  *
  * A topic is a file with a function that adds its cases to a list: see bench_case in bench.h. */
 #if !defined(_WIN32)
-#define _POSIX_C_SOURCE 200112L
+#define _POSIX_C_SOURCE 200112L /* NOLINT(bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp): the name is POSIX's */
 #endif
 
 #include <errno.h>
@@ -10,17 +10,20 @@
 #include <sys/stat.h>
 #endif
 
+#include "bench_bounds.h"
 #include "bench_closure.h"
 #include "bench_eval.h"
 #include "bench_models.h"
 #include "bench_operators.h"
 #include "bench_project.h"
 #include "bench_sample.h"
+#include "bench_skip.h"
 #include "bench_square.h"
 #include "bench_svg.h"
 
 static const char usage[] = "usage: sh_bench [--list] [--filter TEXT] [--quick] [--json FILE] [--svg FILE] [--help]\n"
                             "       sh_bench --models FILE [--env FILE...]\n"
+                            "       sh_bench --bounds FILE\n"
                             "\n"
                             "Measures sh.h: each case in turns with its baseline and with its physical limit.\n"
                             "\n"
@@ -31,12 +34,13 @@ static const char usage[] = "usage: sh_bench [--list] [--filter TEXT] [--quick] 
                             "  --svg FILE     plot run time against error\n"
                             "  --models FILE  measure the models of irradiance instead, and plot run time against model error\n"
                             "  --env FILE...  panoramas (PFM, multiples of 128x64) to add to the lights of that plot\n"
+                            "  --bounds FILE  measure nothing, and draw the bounds and the closure of irradiance for eight lights\n"
                             "\n"
                             "Exit status: 0; 1 if an error is larger than its bound; 2 if something cannot be done.\n";
 
 typedef struct bench_options {
     int list, quick, help;
-    const char *filter, *json, *svg, *models;
+    const char *filter, *json, *svg, *models, *bounds;
     const char *const *env; /* of argv */
     int env_count;
 } bench_options;
@@ -57,6 +61,7 @@ static int parse(int argc, char **argv, bench_options *options) {
                              : strcmp(option, "--json") == 0 ? &options->json
                              : strcmp(option, "--svg") == 0  ? &options->svg
                              : strcmp(option, "--models") == 0 ? &options->models
+                             : strcmp(option, "--bounds") == 0 ? &options->bounds
                                                              : NULL;
         if (value && i + 1 == argc)
             return complain("nothing follows", option);
@@ -82,6 +87,7 @@ static bench_list matching_cases(const char *filter) {
     bench_list all = { NULL, 0, 0 };
     bench_eval_cases(&all);
     bench_closure_cases(&all);
+    bench_skip_cases(&all);
     bench_sample_cases(&all);
     bench_equirect_cases(&all);
     bench_square_cases(&all);
@@ -196,14 +202,21 @@ static int measure_and_report(const bench_list *list, const bench_options *optio
     return status;
 }
 
-static int draw_models(const bench_options *options) {
-    FILE *file = fopen(options->models, "wb");
+/* The models or the bounds. */
+static int draw(const bench_options *options) {
+    const char *path = options->models ? options->models : options->bounds;
+    FILE *file = fopen(path, "wb");
+    int unread = 0;
     if (!file)
-        return complain("cannot write", options->models);
-    const int unread = bench_models(file, options->env, options->env_count);
+        return complain("cannot write", path);
+    if (options->models)
+        unread = bench_models(file, options->env, options->env_count);
+    else
+        bench_bounds(file);
     const int failed = ferror(file);
     if (fclose(file) != 0 || failed)
-        return complain("cannot write", options->models);
+        return complain("cannot write", path);
+    /* NOLINTNEXTLINE(clang-analyzer-core.NullDereference): a panorama that cannot be read is one of the list */
     return unread ? complain("cannot read panorama", options->env[unread - 1]) : 0;
 }
 
@@ -215,8 +228,8 @@ int main(int argc, char **argv) {
         fputs(usage, stdout);
         return 0;
     }
-    if (options.models)
-        return draw_models(&options);
+    if (options.models || options.bounds)
+        return draw(&options);
     bench_list list = matching_cases(options.filter);
     int status = 0;
     if (list.count == 0)
