@@ -1,9 +1,9 @@
 /* shlight - projects a panorama to spherical harmonics, measures what each reconstruction of irradiance makes of it, and draws that.
  *
- *     shlight [PANORAMA.hdr|.pfm] [-o OUT.png] [--order N] [--quiet] [--help]
+ *     shlight [PANORAMA.hdr|.pfm] [-o OUT.png] [--order N] [--models A,B] [--bounds] [--no-picture] [--quiet] [--help]
  *
  * Here: the models; the report; the command line. In the headers beside this file: shlight_scene.h projects and measures,
- * shlight_reference.h is the brute force, shlight_picture.h draws, shlight_image.h reads files, shlight_sky.h is the built-in sky.
+ * shlight_reference.h is the brute force, shlight_picture.h and shlight_bounds.h draw, shlight_image.h reads files, shlight_sky.h is the built-in sky.
  */
 #include <errno.h>
 #include <stdarg.h>
@@ -96,10 +96,28 @@ static const model models[] = {
 
 enum { MODELS = sizeof models / sizeof models[0] };
 
-static int models_up_to(int order) {
+/* Whether `name` is the text from `begin` to `end`. */
+static int is_name(const char *name, const char *begin, const char *end) {
+    return strlen(name) == (size_t)(end - begin) && !strncmp(name, begin, (size_t)(end - begin));
+}
+
+/* The models of a list of names between commas, in its order; NULL: all up to `order`; "none": none. Returns how many, or -1 if there is
+ * one that has no such name, is above `order` or named too often. */
+static int choose_models(const char *list, int order, const model *chosen[MAX_MODELS]) {
     int count = 0;
-    while (count < MODELS && models[count].order <= order)
-        count++;
+    for (int i = 0; !list && i < MODELS && models[i].order <= order; i++)
+        chosen[count++] = &models[i];
+    if (!list || !strcmp(list, "none"))
+        return count;
+    for (const char *name = list, *end; name; name = *end ? end + 1 : NULL) {
+        int i = 0;
+        end = name + strcspn(name, ",");
+        while (i < MODELS && !is_name(models[i].name, name, end))
+            i++;
+        if (i == MODELS || models[i].order > order || count == MAX_MODELS)
+            return -1;
+        chosen[count++] = &models[i];
+    }
     return count;
 }
 
@@ -127,6 +145,7 @@ static void print_coefficients(const scene *s) {
     const int channels = s->image.channels, stride = SH_COUNT(s->order);
     printf("\n%-18s", "coefficients");
     for (int k = 0; k < channels; k++)
+        /* NOLINTNEXTLINE(clang-analyzer-core.CallAndMessage): an image has 1 or 3 channels */
         printf(" %15s", channel_name[channels == 3][k]);
     putchar('\n');
     for (int i = 0; i < stride; i++) {
@@ -157,6 +176,21 @@ static void print_light(const scene *s) {
     print_channels("ambient", ambient, channels);
 }
 
+static void print_models(const scene *s) {
+    printf("\nirradiance / pi against brute force over %d normals and all channels, relative to R0 of the channel\n", NORMALS);
+    printf("%-18s %6s %10s %10s %10s\n", "model", "floats", "RMS error", "max error", "lowest");
+    for (int i = 0; i < s->model_count; i++)
+        printf("%-18s %6d %10.4f %10.4f %10.4f\n", s->models[i]->name, SH_COUNT(s->models[i]->order), s->error[i].rms,
+               s->error[i].max, s->error[i].lowest);
+}
+
+static void print_bounds(const scene *s) {
+    printf("\nproven bounds of irradiance / pi; brute force itself is uncertain by .001\n");
+    printf("%-18s %6s %10s %13s\n", "order", "floats", "mean width", "truth beyond");
+    for (int order = SH_L1; order <= s->order; order++)
+        printf("L%-17d %6d %10.4f %13.4f\n", order, SH_COUNT(order), s->bounds[order].width, s->bounds[order].beyond);
+}
+
 static void print_report(const scene *s) {
     printf("panorama           %s\n", s->name);
     printf("format             %s, %d x %d\n", s->image.format, s->image.width, s->image.height);
@@ -165,11 +199,10 @@ static void print_report(const scene *s) {
     print_coefficients(s);
     if (s->order >= SH_L1)
         print_light(s);
-    printf("\nirradiance / pi against brute force over %d normals and all channels, relative to R0 of the channel\n", NORMALS);
-    printf("%-18s %6s %10s %10s %10s\n", "model", "floats", "RMS error", "max error", "lowest");
-    for (int i = 0; i < s->model_count; i++)
-        printf("%-18s %6d %10.4f %10.4f %10.4f\n", s->models[i].name, SH_COUNT(s->models[i].order), s->error[i].rms,
-               s->error[i].max, s->error[i].lowest);
+    if (s->model_count)
+        print_models(s);
+    if (s->show_bounds)
+        print_bounds(s);
 }
 
 /* ---- The command line -------------------------------------------------------------------------------------------------------------- */
@@ -177,7 +210,7 @@ static void print_report(const scene *s) {
 enum { STATUS_OK = 0, STATUS_FAILED = 1, STATUS_BAD_INPUT = 2 };
 
 static const char usage[] =
-    "usage: shlight [PANORAMA.hdr|.pfm] [-o OUT.png] [--order N] [--quiet] [--help]\n"
+    "usage: shlight [PANORAMA.hdr|.pfm] [-o OUT.png] [--order N] [--models A,B] [--bounds] [--no-picture] [--quiet] [--help]\n"
     "\n"
     "Projects an equirectangular panorama to spherical harmonics, prints coefficients, light and the error of every\n"
     "reconstruction against brute-force irradiance, and draws that as spheres. Without a panorama: a built-in sky.\n"
@@ -187,14 +220,18 @@ static const char usage[] =
     "               left out, negative values count as 0; both are reported.\n"
     "  -o OUT.png   the picture's file, shlight.png by default; complete or untouched\n"
     "  --order N    the highest band, 0 to 2, by default 2\n"
+    "  --models A,B only these models, by their names in the report, such as 'L1 closure,L2 closure'; none: no model\n"
+    "  --bounds     also the bounds that 4 and 9 coefficients prove for the irradiance: their width in the report, and in\n"
+    "               the picture a plot of them around the light, with the truth, the linear model and the closure\n"
+    "  --no-picture only the report\n"
     "  --quiet      no progress on stderr (there is none either where stderr is not a terminal)\n"
     "  --help       this text\n"
     "\n"
     "exit status: 0 done; 1 the picture or the report could not be made or written; 2 bad arguments or panorama\n";
 
 typedef struct options {
-    const char *panorama, *output;
-    int order, quiet, help;
+    const char *panorama, *output, *models;
+    int order, bounds, no_picture, quiet, help;
 } options;
 
 static int stderr_is_terminal(void) {
@@ -236,16 +273,23 @@ static int ends_in_png(const char *path) {
 static int parse_options(int argc, char **argv, options *o) {
     for (int i = 1; i < argc; i++) {
         const char *a = argv[i], *value = i + 1 < argc ? argv[i + 1] : NULL;
+        /* NOLINTNEXTLINE(clang-analyzer-core.NonNullParamChecker): there is an argv[i] below argc */
         if (!strcmp(a, "--help") || !strcmp(a, "-h"))
             o->help = 1;
         else if (!strcmp(a, "--quiet"))
             o->quiet = 1;
-        else if ((!strcmp(a, "-o") || !strcmp(a, "--order")) && !value)
+        else if (!strcmp(a, "--bounds"))
+            o->bounds = 1;
+        else if (!strcmp(a, "--no-picture"))
+            o->no_picture = 1;
+        else if ((!strcmp(a, "-o") || !strcmp(a, "--order") || !strcmp(a, "--models")) && !value)
             return fail(o, STATUS_BAD_INPUT, "%s needs an argument (--help lists the options)", a);
         else if (!strcmp(a, "-o"))
             o->output = argv[++i];
+        else if (!strcmp(a, "--models"))
+            o->models = argv[++i];
         else if (!strcmp(a, "--order")) {
-            if (strlen(value) != 1 || value[0] < '0' || value[0] > '2')
+            if (!value || strlen(value) != 1 || value[0] < '0' || value[0] > '2')
                 return fail(o, STATUS_BAD_INPUT, "--order %s: must be 0, 1 or 2", value);
             o->order = argv[++i][0] - '0';
         } else if (a[0] == '-')
@@ -255,6 +299,8 @@ static int parse_options(int argc, char **argv, options *o) {
         else
             o->panorama = a;
     }
+    if (o->bounds && o->order == SH_L0)
+        return fail(o, STATUS_BAD_INPUT, "--bounds needs order 1 or 2");
     if (!ends_in_png(o->output))
         return fail(o, STATUS_BAD_INPUT, "%s: the picture's name must end in .png", o->output);
     return STATUS_OK;
@@ -292,8 +338,11 @@ static int load(const options *o, scene *s) {
     const char *error = NULL;
     s->name = o->panorama ? o->panorama : "built-in sky";
     s->order = o->order;
-    s->models = models;
-    s->model_count = models_up_to(o->order);
+    s->show_bounds = o->bounds;
+    s->model_count = choose_models(o->models, o->order, s->models);
+    if (s->model_count < 0)
+        return fail(o, STATUS_BAD_INPUT, "--models %s: not models of order %d or less, in the words of the report", o->models,
+                    o->order);
     if (o->panorama) {
         size_t size;
         unsigned char *bytes = read_file(o->panorama, &size, &error);
@@ -325,17 +374,18 @@ static int run(const options *o, scene *s) {
     if (scene_measure(s) != 0)
         return fail(o, STATUS_FAILED, "not enough memory");
     progress(o, "drawing");
-    status = save(o, s);
+    status = o->no_picture ? STATUS_OK : save(o, s);
     if (status != STATUS_OK)
         return status;
     progress(o, "");
     print_report(s);
-    printf("\npicture            %s\n", o->output);
+    if (!o->no_picture)
+        printf("\npicture            %s\n", o->output);
     return fflush(stdout) == 0 && !ferror(stdout) ? STATUS_OK : fail(o, STATUS_FAILED, "the report could not be written");
 }
 
 int main(int argc, char **argv) {
-    options o = { NULL, "shlight.png", SH_L2, 0, 0 };
+    options o = { NULL, "shlight.png", NULL, SH_L2, 0, 0, 0, 0 };
     scene s = { 0 };
     int status = parse_options(argc, argv, &o);
     if (status == STATUS_OK && o.help)

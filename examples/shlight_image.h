@@ -116,7 +116,7 @@ static const char *shlight_hdr_header(shlight_bytes *in, float exposure[3]) {
             const char *format = line + 7 + strspn(line + 7, " \t");
             if (!strncmp(format, "32-bit_rle_xyze", 15))
                 return "XYZE pixels are not supported, RGBE are: convert it first";
-            if (strncmp(format, "32-bit_rle_rgbe", 15))
+            if (strncmp(format, "32-bit_rle_rgbe", 15) != 0)
                 return "unknown FORMAT in the Radiance header";
         } else if (!strncmp(line, "EXPOSURE=", 9)) {
             float factor = shlight_positive(line + 9, NULL);

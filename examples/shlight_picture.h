@@ -1,35 +1,14 @@
-/* shlight_picture.h - the picture: a card for the panorama and its true irradiance, then one for each model with its error. */
+/* shlight_picture.h - the picture: a card for the panorama and its true irradiance, then one for each model with its error, then the
+ * bounds. */
 #ifndef SHLIGHT_PICTURE_H
 #define SHLIGHT_PICTURE_H
 
-#include <stdarg.h>
-#include <stdio.h>
-
-#include "shlight_draw.h"
+#include "shlight_bounds.h"
+#include "shlight_card.h"
 #include "shlight_png.h"
 #include "shlight_scene.h"
 
-enum {
-    RADIUS = 84,                 /* of a sphere */
-    DIAMETER = 2 * RADIUS,       /* of a sphere */
-    DISC = DIAMETER * DIAMETER,  /* texels of a sphere, at most */
-    MARGIN = 36,                 /* around everything */
-    PAD = 22,                    /* around what a card holds */
-    GAP = 16,                    /* between the spheres of a pair, and between cards */
-    PAIR = 2 * DIAMETER + GAP,   /* a front and a back */
-    LIT = MARGIN + PAD + 250,    /* left edges: lit spheres, */
-    HEAT = LIT + PAIR + 3 * GAP, /* errors */
-    WIDTH = HEAT + PAIR + PAD + MARGIN,
-    CARD = DIAMETER + 2 * PAD, /* height of a row */
-    HEADER = 104,
-    CAPTIONS = 40,
-    LEGEND = 84
-};
-
-static const shlight_font font_title = { 19.0f, 0.13f }, font_name = { 14.0f, 0.13f }, font_text = { 9.5f, 0.13f };
-
-/* Palette, sRGB. */
-enum { PAGE = 0x131416, CARD_COLOUR = 0x1d1f22, BRIGHT = 0xf2f2f0, PLAIN = 0xb9bcc2, DIM = 0x80848c, NEGATIVE = 0x4b5fd0 };
+static const shlight_font font_title = { 19.0f, 0.13f };
 
 /* A sphere seen from two opposite sides, its texels listed from the top left. */
 typedef struct sphere {
@@ -147,10 +126,6 @@ static void draw_error(shlight_canvas *canvas, const scene *s, const sphere *bal
     }
 }
 
-static void draw_centered(shlight_canvas *canvas, float x, float base, shlight_font font, unsigned colour, const char *text) {
-    shlight_text(canvas, x - 0.5f * shlight_text_width(font, text), base, font, shlight_hex(colour), text);
-}
-
 /* The texel of a PAIR wide thumbnail that shows a direction. */
 static void thumbnail_position(const float dir[3], float *x, float *y) {
     const float pi = acosf(-1.0f), turn = -atan2f(dir[1], dir[0]) / (2.0f * pi);
@@ -195,24 +170,10 @@ static void draw_directions(shlight_canvas *canvas, const scene *s, const sphere
     }
 }
 
-static void draw_card(shlight_canvas *canvas, int top) {
-    shlight_rectangle(canvas, MARGIN, top, WIDTH - 2 * MARGIN, CARD, 10.0f, shlight_hex(CARD_COLOUR));
-}
-
-/* Writes formatted text; returns where it ends. */
-static float draw_text(shlight_canvas *canvas, int x, int base, shlight_font font, unsigned colour, const char *format, ...) {
-    char text[160];
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
-    va_end(arguments);
-    return shlight_text(canvas, (float)x, (float)base, font, shlight_hex(colour), text);
-}
-
 static void draw_model(shlight_canvas *canvas, const scene *s, const sphere *ball, const model *m, const model_error *e, int top) {
     const int text = MARGIN + PAD, count = SH_COUNT(m->order);
     model_state state[3];
-    draw_card(canvas, top);
+    draw_card(canvas, top, CARD);
     draw_text(canvas, text, top + 48, font_name, BRIGHT, "%s", m->name);
     draw_text(canvas, text, top + 74, font_text, DIM, "%s", m->formula);
     draw_text(canvas, text, top + 94, font_text, DIM, "%d float%s a channel", count, count == 1 ? "" : "s");
@@ -246,7 +207,7 @@ static void draw_file_name(shlight_canvas *canvas, const char *path, int x, int 
     size_t length = strlen(path);
     const int cut = length > sizeof text - 4;
     length = cut ? sizeof text - 4 : length;
-    memcpy(text, path, length);
+    memcpy(text, path, length); /* NOLINT(bugprone-not-null-terminated-result): the next line ends the string */
     memcpy(text + length, cut ? "..." : "\0\0\0", 4);
     while (length && shlight_text_width(font_text, text) > (float)(LIT - x - PAD))
         memcpy(text + --length, "...", 4);
@@ -263,7 +224,7 @@ static int draw_reference(shlight_canvas *canvas, const scene *s, const sphere *
                  "shlight");
     draw_captions(canvas, top - 14, LIT, "irradiance");
     draw_centered(canvas, HEAT + 0.5f * PAIR, (float)(top - 14), font_text, DIM, "panorama");
-    draw_card(canvas, top);
+    draw_card(canvas, top, CARD);
     draw_text(canvas, text, top + 48, font_name, BRIGHT, "Reference");
     draw_text(canvas, text, top + 74, font_text, DIM, "brute force over the texels");
     draw_file_name(canvas, s->name, text, top + 140);
@@ -289,25 +250,53 @@ static void draw_legend(shlight_canvas *canvas, int top) {
     draw_text(canvas, LIT + 22, top + 11, font_text, DIM, "below zero");
 }
 
+/* Where the parts of the picture begin, from the top. */
+typedef struct layout {
+    int models, legend, bounds, height;
+} layout;
+
+static layout picture_layout(const scene *s) {
+    const int reference_end = HEADER + CARD;
+    layout at;
+    at.models = reference_end + CAPTIONS;
+    at.legend = at.models + s->model_count * (CARD + GAP) + 12;
+    at.height = s->model_count ? at.legend - 12 + LEGEND : reference_end + MARGIN;
+    at.bounds = (s->model_count ? at.height - 10 : reference_end) + CAPTIONS;
+    if (s->show_bounds)
+        at.height = at.bounds + s->order * (BOUNDS_CARD + GAP) - GAP + MARGIN;
+    return at;
+}
+
+/* -1: not enough memory. */
+static int draw_parts(shlight_canvas *canvas, const scene *s, const layout *at, sphere *ball) {
+    sphere_init(s, ball);
+    if (draw_reference(canvas, s, ball) != 0)
+        return -1;
+    if (s->model_count) {
+        draw_captions(canvas, at->models - 14, LIT, "irradiance");
+        draw_captions(canvas, at->models - 14, HEAT, "error");
+        draw_legend(canvas, at->legend);
+    }
+    for (int i = 0; i < s->model_count; i++)
+        draw_model(canvas, s, ball, s->models[i], &s->error[i], at->models + i * (CARD + GAP));
+    if (s->show_bounds)
+        draw_bounds(canvas, s, at->bounds);
+    return 0;
+}
+
 /* The whole picture as PNG bytes; NULL: not enough memory. */
 static unsigned char *draw_picture(const scene *s, size_t *size) {
+    const layout at = picture_layout(s);
     unsigned char *png = NULL;
-    shlight_canvas canvas = { NULL, WIDTH, HEADER + CARD + CAPTIONS + s->model_count * (CARD + GAP) + LEGEND };
+    shlight_canvas canvas = { NULL, WIDTH, at.height };
     const size_t texels = (size_t)canvas.width * (size_t)canvas.height;
     canvas.texel = (float(*)[3])malloc(texels * sizeof *canvas.texel);
     sphere *ball = (sphere *)malloc(sizeof *ball);
     unsigned char *rgb = (unsigned char *)malloc(3 * texels);
     if (canvas.texel && ball && rgb) {
-        int top = HEADER + CARD + CAPTIONS;
         memset(canvas.texel, 0, texels * sizeof *canvas.texel);
         shlight_rectangle(&canvas, 0, 0, canvas.width, canvas.height, 0.0f, shlight_hex(PAGE));
-        sphere_init(s, ball);
-        const int failed = draw_reference(&canvas, s, ball);
-        draw_captions(&canvas, top - 14, LIT, "irradiance");
-        draw_captions(&canvas, top - 14, HEAT, "error");
-        for (int i = 0; i < s->model_count; i++, top += CARD + GAP)
-            draw_model(&canvas, s, ball, &s->models[i], &s->error[i], top);
-        draw_legend(&canvas, top + 12);
+        const int failed = draw_parts(&canvas, s, &at, ball);
         shlight_encode(&canvas, rgb);
         png = failed ? NULL : shlight_png(rgb, canvas.width, canvas.height, size);
     }

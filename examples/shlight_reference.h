@@ -124,7 +124,7 @@ static shlight_blocks *shlight_blocks_new(const shlight_image *image, const doub
         shlight_integrate_columns(column, columns, integral);
         for (int r = 0; r < rows; r++) {
             const float *texels = image->pixels + (size_t)row[r].source * (size_t)image->width * (size_t)image->channels;
-            for (int k = 0; k < image->channels; k++) {
+            for (int k = 0; k < 3 && k < image->channels; k++) {
                 shlight_row_sum sum;
                 shlight_sum_row(texels, image->channels, k, column, columns, (const double(*)[3])integral, sum);
                 shlight_add_row(row + r, scale[k] / acos(-1.0), (const double(*)[3])sum, k, blocks);
@@ -166,6 +166,7 @@ static void shlight_irradiance(const shlight_blocks *blocks, const float n[3], f
         const shlight_tile *tile = &blocks->tile[i];
         const float height = shlight_dot(tile->center, n);
         for (int k = 0; height > -tile->sine && k < blocks->channels; k++)
+            /* NOLINTNEXTLINE(clang-analyzer-core.uninitialized.Assign): there are at most 3 channels */
             sum[k] += (double)(height >= tile->sine ? shlight_dot(tile->total[k], n) : shlight_cut_tile(tile, k, n));
     }
     for (int k = 0; k < blocks->channels; k++)

@@ -27,6 +27,14 @@ typedef struct model_error {
     double rms, max, lowest;
 } model_error;
 
+/* Of the bounds of one order, over all normals and channels, relative likewise: their mean distance, and by how much the truth is beyond
+ * one of them at most. */
+typedef struct bounds_error {
+    double width, beyond;
+} bounds_error;
+
+enum { MAX_MODELS = 16 };
+
 /* Everything that is known of one panorama. Irradiance, and coefficients for the models, are in units of their channel's R0: errors
  * are then relative to it, and no magnitude of radiance is too much for float arithmetic. */
 typedef struct scene {
@@ -42,9 +50,11 @@ typedef struct scene {
     float (*normal)[3];                  /* NORMALS, evenly spread */
     float (*truth)[3];                   /* of each normal, all channels */
     float brightest;                     /* the largest truth, weighted */
-    const model *models;                 /* those to compare, of this order or less */
-    model_error *error;                  /* of each */
+    const model *models[MAX_MODELS];     /* those to compare, of this order or less */
+    model_error error[MAX_MODELS];       /* of each */
     int model_count;
+    bounds_error bounds[3]; /* [order] */
+    int show_bounds;
 } scene;
 
 static void scene_free(scene *s) {
@@ -52,7 +62,6 @@ static void scene_free(scene *s) {
     free(s->blocks);
     free(s->normal);
     free(s->truth);
-    free(s->error);
 }
 
 /* Channel k as a model wants it. */
@@ -78,6 +87,19 @@ static model_error measure_model(const scene *s, const model *m) {
         }
     }
     e.rms = sqrt(e.rms / (NORMALS * s->image.channels));
+    return e;
+}
+
+static bounds_error measure_bounds(const scene *s, int order) {
+    bounds_error e = { 0.0, 0.0 };
+    for (int k = 0; k < s->image.channels; k++)
+        for (int i = 0; i < NORMALS; i++) {
+            const float truth = s->truth[i][k];
+            float lo, hi;
+            sh_irradiance_bounds(order, s->relative + k * SH_COUNT(s->order), s->normal[i], &lo, &hi);
+            e.width += (double)(hi - lo) / (NORMALS * s->image.channels);
+            e.beyond = fmax(e.beyond, (double)fmaxf(lo - truth, truth - hi));
+        }
     return e;
 }
 
@@ -140,8 +162,7 @@ static int scene_measure(scene *s) {
     s->blocks = shlight_blocks_new(&s->image, scale);
     s->normal = (float(*)[3])malloc(NORMALS * sizeof *s->normal);
     s->truth = (float(*)[3])malloc(NORMALS * sizeof *s->truth);
-    s->error = (model_error *)malloc((size_t)s->model_count * sizeof *s->error);
-    if (!s->blocks || !s->normal || !s->truth || !s->error)
+    if (!s->blocks || !s->normal || !s->truth)
         return -1;
     scene_true_irradiance(s);
     s->brightest = 0.0f;
@@ -149,7 +170,9 @@ static int scene_measure(scene *s) {
         for (int k = 0; k < s->image.channels; k++)
             s->brightest = fmaxf(s->brightest, s->weight[k] * s->truth[i][k]);
     for (int i = 0; i < s->model_count; i++)
-        s->error[i] = measure_model(s, &s->models[i]);
+        s->error[i] = measure_model(s, s->models[i]);
+    for (int order = SH_L1; order <= s->order; order++)
+        s->bounds[order] = measure_bounds(s, order);
     return 0;
 }
 

@@ -51,8 +51,13 @@ run() {
     "$shlight" "$@" >out.txt 2>err.txt || status=$?
 }
 
+# report ARGUMENT...: a run without a picture, where the report alone is under test.
+report() {
+    run --no-picture "$@"
+}
+
 coefficients() { # coefficients FILE: as printed
-    run "$1" -o picture.png
+    report --models none "$1"
     sed -n '/^coefficients/,/^$/p' out.txt
 }
 
@@ -98,16 +103,20 @@ fi
 
 help_lists_options() {
     run --help
-    [ "$status" = 0 ] && [ ! -s err.txt ] && grep -q -e '--order' out.txt && grep -q -e '--quiet' out.txt && grep -q -e '-o ' out.txt
+    [ "$status" = 0 ] && [ ! -s err.txt ] || return 1
+    for option in '-o OUT.png' --order --models --bounds --no-picture --quiet --help; do
+        grep -q -e "^  $option " out.txt || return 1
+    done
 }
 check '--help lists the options' help_lists_options
 
 encode base.pfm pfm-little
 coefficients base.pfm >expected.txt
+report base.pfm
 cp out.txt base.txt
 
 quiet_run() {
-    run --quiet -o quiet.png base.pfm
+    run --quiet --models none -o quiet.png base.pfm
     [ "$status" = 0 ] && [ ! -s err.txt ] && [ -s quiet.png ] && grep -q 'picture *quiet.png' out.txt
 }
 check '--quiet: nothing on stderr, the picture where -o says' quiet_run
@@ -118,6 +127,57 @@ order_run() { # order_run N MODELS
 }
 check '--order 0: one model, one coefficient' order_run 0 1 1
 check '--order 1: six models, four coefficients' order_run 1 6 4
+
+no_picture() {
+    rm -f ./*.png
+    report base.pfm
+    [ "$status" = 0 ] && [ ! -s err.txt ] && ! grep -q picture out.txt || return 1
+    for left in ./*.png ./*.part; do
+        [ -e "$left" ] && return 1
+    done
+    return 0
+}
+check '--no-picture: no file' no_picture
+
+# The models in the order of the list, with the numbers that they have among all.
+chosen_models() {
+    report --models 'L2 closure,L1 ZH3' base.pfm
+    sed -n '/^model/,/^$/s/^L/&/p' out.txt >actual.txt
+    { grep '^L2 closure' base.txt && grep '^L1 ZH3' base.txt; } | diff - actual.txt
+}
+check '--models: these and no others' chosen_models
+no_models() {
+    report --models none base.pfm
+    [ "$status" = 0 ] && ! grep -qE '^(model|L[0-2])' out.txt && grep -q '^R2 yz' out.txt
+}
+check '--models none' no_models
+
+# size FILE: width and height of a PNG.
+size() {
+    od -An -tu1 -j 16 -N 8 "$1" | awk '{ print $3 * 256 + $4, $7 * 256 + $8 }'
+}
+
+# bounds_run ORDER: two lines of bounds at order 2, one at 1; those of L2 are narrower, and the truth is between them but for what brute
+# force is uncertain by. The picture grows by a card for each.
+bounds_run() {
+    run --order "$1" --models none base.pfm -o plain.png
+    run --order "$1" --models none --bounds base.pfm -o bounds.png
+    [ "$status" = 0 ] && [ ! -s err.txt ] || return 1
+    sed -n '/^proven/,/^$/s/^L//p' out.txt >bounds.txt
+    [ "$(wc -l <bounds.txt)" = "$1" ] &&
+        awk '$2 != ($1 + 1) ^ 2 || !($3 > 0.01 && $3 < 4) || (NR > 1 && $3 > width) || $4 > 0.001 { exit 1 } { width = $3 }' bounds.txt &&
+        echo "$(size plain.png) $(size bounds.png) $1" | awk '{ exit !($1 == $3 && $4 > $2 + 250 * $5 && $4 < $2 + 400 * $5) }'
+}
+check '--bounds, order 1' bounds_run 1
+check '--bounds, order 2' bounds_run 2
+
+# The bounds of a single light close on it: 4 from where it shines, 0 from behind.
+bounds_close() {
+    { bytes 'Pf\n64 32\n-1\n' && head -c 4500 /dev/zero && bytes '\000\000\200\077' && head -c 3688 /dev/zero; } >file.pfm
+    report --models none --bounds file.pfm
+    awk '/^L[12] / { n++; if (!($3 < 0.02 && $4 < 0.001)) exit 1 } END { exit n != 2 }' out.txt
+}
+check '--bounds of a single light are narrow' bounds_close
 
 # ---- Every format reads the same ------------------------------------------------------------------------------------------------------
 
@@ -156,7 +216,7 @@ check 'EXPOSURE is divided out, the scale of a PFM multiplied in' exposure_divid
 colour_correction() {
     encode file.hdr flat 'header=COLORCORR= 1 2 4'
     before=$(sed -n 's/^R0  *//p' base.txt)
-    run file.hdr -o picture.png
+    report --models none file.hdr
     after=$(row R0)
     echo "$before / $after"
     echo "$before $after" | awk 'function near(a, b) { return a - b < 1e-7 && b - a < 1e-7 } { exit !(near($1, $4) && near($2, 2 * $5) && near($3, 4 * $6)) }'
@@ -166,14 +226,14 @@ check 'COLORCORR is divided out' colour_correction
 # 600 texels of radiance 1: 87 + 2 * 256 repeats.
 long_run() {
     bytes '#?RGBE\n\n-Y 1 +X 600\n' '\200\200\200\201' '\001\001\001\127' '\001\001\001\002' >file.hdr
-    run file.hdr -o picture.png
+    report --models none file.hdr
     [ "$status" = 0 ] && row R0 | awk '{ exit !($1 == 1 && $2 == 1 && $3 == 1) }'
 }
 check 'Radiance, old run longer than 255' long_run
 
 carriage_returns() {
     bytes 'PF\r\n1 1\r\n1\r\n' '\077\200\000\000\077\200\000\000\077\200\000\000' >file.pfm
-    run file.pfm -o picture.png
+    report --models none file.pfm
     [ "$status" = 0 ] && row R0 | awk '{ exit !($1 == 1 && $2 == 1 && $3 == 1) }'
 }
 check 'PFM, lines ended as on Windows' carriage_returns
@@ -201,7 +261,7 @@ check 'NaN, infinite and negative texels are counted and do no harm' hard_texels
 
 magnitude() { # magnitude SCALE
     encode file.pfm pfm-little scale="$1"
-    run file.pfm -o picture.png
+    report file.pfm
     sed -n '/^model/,/^$/p' base.txt >expected_model.txt
     sed -n '/^model/,/^$/p' out.txt | diff expected_model.txt -
 }
@@ -245,6 +305,11 @@ check 'no argument: -o' refused 2 '-o needs' -o
 check 'no argument: --order' refused 2 '--order needs' --order
 check 'order 3' refused 2 '--order 3' --order 3
 check 'order -1' refused 2 '--order -1' --order -1
+check 'no argument: --models' refused 2 '--models needs' --models
+check 'a model that there is not' refused 2 'not models of order 2' --models 'L1 closure,L3 closure'
+check 'an empty name of a model' refused 2 'not models of order 2' --models 'L1 closure,'
+check 'a model above the order' refused 2 'not models of order 1' --order 1 --models 'L2 closure'
+check 'bounds at order 0' refused 2 '--bounds needs order 1 or 2' --order 0 --bounds
 check 'order 1x' refused 2 '--order 1x' --order 1x
 check 'two panoramas' refused 2 'one panorama' a.hdr b.hdr
 check 'a picture that is no PNG' refused 2 'picture.jpg' -o picture.jpg
@@ -311,14 +376,14 @@ check 'Radiance: cut anywhere' every_cut
 # ---- A picture that cannot be written -------------------------------------------------------------------------------------------------
 
 no_folder() {
-    run base.pfm -o no/such/folder.png
+    run --models none base.pfm -o no/such/folder.png
     [ "$status" = 1 ] && [ ! -s out.txt ] && [ "$(wc -l <err.txt)" = 1 ] && grep -q 'no/such/folder.png: ' err.txt
 }
 check 'no such folder: exit status 1, one line' no_folder
 
 a_folder() {
     mkdir folder.png
-    run base.pfm -o folder.png
+    run --models none base.pfm -o folder.png
     [ "$status" = 1 ] && [ "$(wc -l <err.txt)" = 1 ] && [ -d folder.png ] && [ ! -e folder.png.part ]
 }
 check 'the name of a folder: exit status 1, nothing left behind' a_folder
@@ -330,7 +395,7 @@ full() {
         trap '' XFSZ
         ulimit -f 8
         status=0
-        "$shlight" base.pfm -o full.png >/dev/null 2>/dev/null || status=$?
+        "$shlight" --models none base.pfm -o full.png >/dev/null 2>/dev/null || status=$?
         [ "$status" = 1 ]
     ) && [ "$(cat full.png)" = keep ] && [ ! -e full.png.part ]
 }
@@ -338,7 +403,7 @@ check 'no room for the picture: the old one stays, nothing left behind' full
 
 full_report() {
     status=0
-    "$shlight" base.pfm -o picture.png >/dev/full 2>err.txt || status=$?
+    "$shlight" --models none base.pfm -o picture.png >/dev/full 2>err.txt || status=$?
     [ "$status" = 1 ] && [ "$(wc -l <err.txt)" = 1 ]
 }
 [ -e /dev/full ] && check 'no room for the report: exit status 1, one line' full_report
@@ -346,7 +411,7 @@ full_report() {
 # ---- Real panoramas, where there are any ----------------------------------------------------------------------------------------------
 
 real_panorama() { # real_panorama FILE: L2 is better than L1, L1 better than L0
-    run "$1" -o picture.png
+    report "$1"
     no_nan && awk '/^L0 /{ a = $3 } /^L1 linear/{ b = $4 } /^L2 linear/{ c = $4 } END { exit !(a > b && b > c && c > 0 && c < 0.1) }' out.txt
 }
 for file in "$here"/../../../shared/envs/studio.pfm "$here"/../../../shared/envs/sunset.pfm; do
