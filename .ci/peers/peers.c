@@ -44,28 +44,33 @@ static void directions(void) {
     print_array("babylon_environment", out, 9, "}");
 }
 
-/* Filament's x, y, z are -y, z, -x of a clockwise panorama: y is up, and -z is where column 0 is, not the middle. */
+/* Filament's x, y, z are -y, z, -x of a clockwise panorama: y is up, and -z is where column 0 is, not the middle. Its reader takes a
+ * mantissa m for m + 1/2, and a texel's corner for its centre: hence many of them. */
 static int panorama(const char *path) {
-    enum { WIDTH = 256, HEIGHT = 128 };
+    enum { WIDTH = 2048, HEIGHT = 1024 };
     static unsigned char pixels[WIDTH * HEIGHT][4];
+    static float radiance[WIDTH * HEIGHT][3];
     const int axis[3] = { -2, 3, -1 };
     float c[27], out[27], interleaved[27];
     for (int y = 0; y < HEIGHT; y++)
         for (int x = 0; x < WIDTH; x++) {
             unsigned char *p = pixels[y * WIDTH + x];
-            const int sun = (x - 60) * (x - 60) + (y - 40) * (y - 40) < 100;
-            p[0] = (unsigned char)(130 + x / 4);
-            p[1] = (unsigned char)(255 - y);
-            p[2] = (unsigned char)(128 + (x * y) % 100);
+            const int sun = (x - 480) * (x - 480) + (y - 320) * (y - 320) < 6400;
+            p[0] = (unsigned char)(130 + x / 32);
+            p[1] = (unsigned char)(255 - y / 8);
+            p[2] = (unsigned char)(128 + (x / 8) * (y / 8) % 100);
             p[3] = sun ? 132 : 129;
+            for (int k = 0; k < 3; k++)
+                radiance[y * WIDTH + x][k] = ldexpf((float)p[k] + 0.5f, p[3] - 136);
         }
     FILE *file = fopen(path, "wb");
     if (!file)
         return 1;
     fprintf(file, "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y %d +X %d\n", HEIGHT, WIDTH);
     fwrite(pixels, 1, sizeof pixels, file);
-    fclose(file);
-    const sh_image image = { pixels, WIDTH, HEIGHT, 0, 3, SH_RGBE8 };
+    if (fclose(file) != 0)
+        return 1;
+    const sh_image image = { radiance, WIDTH, HEIGHT, 0, 3, SH_F32 };
     if (sh_project_equirect(SH_L2, &image, SH_CLOCKWISE, c, NULL) != SH_OK)
         return 1;
     for (int k = 0; k < 3; k++) {

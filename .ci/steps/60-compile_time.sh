@@ -2,5 +2,5 @@
 need_gcc
 need_clang
 
-check "compile time" .ci/compile_time.sh
+check "compile time" .ci/compile_time.sh 3
 sed -n '/^|/p' "$work/log/compile_time.log"

@@ -1,0 +1,2 @@
+/* For clang's intrinsics' headers in MSVC mode. */
+#include <stdlib.h>
