@@ -4,9 +4,9 @@
  *
  *     sh_image sky = { pixels, 1024, 512, 0, 3, SH_F32 };            // an equirectangular panorama, RGB floats
  *     float c[3 * SH_COUNT(SH_L2)];                                  // 9 coefficients a channel, planar
- *     if (sh_project_equirect(SH_L2, &sky, 0, c, NULL) == SH_OK) {
+ *     if (sh_project_equirect(SH_L2, &sky, SH_CLOCKWISE, c, NULL) == SH_OK) {
  *         float up[3] = { 0, 0, 1 };
- *         float red = sh_irradiance(SH_L2, c, up);                   // what a white surface facing up reflects; green: c + 9
+ *         float red = sh_irradiance_closure(SH_L2, c, up);           // what a white surface facing up reflects; green: c + 9
  *     }
  *
  * CONVENTIONS
@@ -20,9 +20,11 @@
  *   irradiance  is E/pi: a white Lambertian surface under a sky of radiance 1 reads 1. Multiply by albedo for outgoing radiance,
  *               by pi for E in W/m^2.
  *   aliasing    an output may be exactly the same array as an input; partial overlap is undefined.
- *   errors      functions that can be handed bad input return SH_OK or a negative SH_ERROR_..., and write nothing on error.
- *               Arithmetic does not look for NaN: NaN in, NaN out, of every function of numbers; decisions take NaN for not negligible;
- *               images leave out texels that are not finite, and count them. Finite input up to 1e18 never gives NaN.
+ *   errors      functions that can be handed bad input return SH_OK or a negative SH_ERROR_..., and write nothing on error; only
+ *               sh_fit_samples has a positive warning, too. Batches return nothing: their arguments are the caller's to get right.
+ *               Arithmetic does not look for NaN: NaN in, NaN out, of every function of numbers, but a direction that is chosen is then
+ *               +z, and codes of 8, 10 or 16 bits have no NaN. Decisions take NaN for not negligible; images leave out texels that
+ *               are not finite, and count them. Finite input up to 1e18 never gives NaN.
  *   rounding    an ulp is 2^-23 of what it is of. Where a comment states no bound, a result is within 4 ulp of the sum of its absolute
  *               terms. Where products underflow, up to 2^-144 times 1 + the largest input more. All of it: docs/accuracy.md.
  *   fast math   -ffast-math keeps results to 2e-6 and still leaves out bad texels; it gives up NaN in, NaN out, results that are the
@@ -33,7 +35,8 @@
  *   SH_NO_BATCH  leaves out batches and images, and the intrinsics' header with them, which costs more time to compile than all
  *                the rest. For files that evaluate single directions. Default: everything.
  *   SH_NO_SIMD   forces the portable scalar kernels. Default: the best of what the compiler's target flags allow.
- *   SH_SIMD      one of the SH_SIMD_... numbers below, to force a backend; it is an error if the target lacks it.
+ *   SH_SIMD      one of the SH_SIMD_... numbers below, to force a backend; it is an error if the target lacks it. SH_SIMD_NAME, a
+ *                string, says which it is (not with SH_NO_BATCH).
  *   SH_DEVICE    what every function is declared with besides `static inline`. Default: `__host__ __device__` where CUDA or HIP
  *                compiles, with scalar kernels then; nothing elsewhere. Define it as nothing for host code with vectors in a .cu.
  *
@@ -156,23 +159,26 @@ SHI_INLINE float sh_irradiance(int order, const float *c, const float n[3]);
 SHI_INLINE float sh_irradiance_opposite(int order, const float *c, const float n[3], float irradiance);
 
 /* Irradiance / pi at unit normal n from the directions within a cone about n only, n.w > cos_angle: ambient occlusion by an aperture.
- * cos_angle is clamped to [0, 1]; 0 is sh_irradiance, 1 is 0. Rounding error <= 8 ulp of the sum of absolute terms. */
+ * cos_angle is clamped to [0, 1]; 0 is sh_irradiance, 1 is 0. For many normals: sh_zonal_ao and sh_convolve once, then
+ * sh_radiance_batch. Rounding error <= 8 ulp of the sum of absolute terms. */
 SHI_INLINE float sh_irradiance_ao(int order, const float *c, const float n[3], float cos_angle);
 
 /* ---- Bounded irradiance and closures: one channel of L1 or L2, one unit normal ---------------------------------------------------
  * The odd part of irradiance is 2 R1.n exactly, whatever the light. For light that is nowhere negative the even part, 2 <|n.w|
  * f>, lies between bounds that the coefficients imply. A closure estimates the bands that were left out from those that are
  * known, and stays between the bounds: never negative, I(n) - I(-n) = 4 n.R1 to rounding, exact for one directional light and
- * for ambient light. Coefficients that no such light has (R0 <= 0, |R1| > R0, or a moment matrix with an eigenvalue below
- * -R0/512, which storage in half floats stays clear of; R0 < 1e-34 counts as black) give the linear reconstruction clamped at 0.
+ * for ambient light. Coefficients that no such light has, not even but for 1/512 of R0 as rounding to half floats leaves them, give
+ * the linear reconstruction clamped at 0: R0 < 1e-34, |R1|^2 > (1 + 1/512) R0^2 at L1, at L2 a moment matrix (see
+ * sh_ambient_floor) with an eigenvalue below -R0/512.
  * Rounding error <= 3e-6 R0 and, where the upper bound is b R0 and decides, 3e-6 R0 / b more, since it is a square root. */
 
 /* Bounds of the true irradiance / pi of any non-negative light that has these coefficients, tight given R0, n.R1 and n'R2 n.
- * L0: 0 and 4 R0. The upper one allows for an error of 8 ulp of R0 in the coefficients. Where they are no light's: lo = hi. */
+ * L0: 0 and 4 R0. The upper one allows for an error of 8 ulp of R0 in the coefficients; a larger error e R0 may put the truth
+ * outside by the order of sqrt(e) R0. Where the coefficients are no light's, both are the linear reconstruction clamped at 0. */
 SHI_INLINE void sh_irradiance_bounds(int order, const float *c, const float n[3], float *lo, float *hi);
 
-/* Henyey-Greenstein closure up to L6, within the bounds. For 54 channels of measured panoramas its mean RMS error is .58 times that
- * of the linear reconstruction at L1 and L2. */
+/* Henyey-Greenstein closure up to L6, within the bounds. Over 18 channels of six measured panoramas its mean RMS error is .69 (L1)
+ * and .61 (L2) times that of the linear reconstruction clamped at 0; of single ones it can be the larger: docs/irradiance.md. */
 SHI_INLINE float sh_irradiance_closure(int order, const float *c, const float n[3]);
 
 /* For comparison and compatibility, from L1: Geomerics' R0 (a + (1 - a) (p + 1) q^p), q = (1 + n.d) / 2, p = 1 + 2r, a = (1 - r)
@@ -196,7 +202,8 @@ enum {
                           * to prepare, equally fast to evaluate. L1 ignores it: what is left over the floor is a single light. */
 };
 
-/* out[channels] from planar sets c; then sh_closure_irradiance(order, out + k, n) is sh_irradiance_closure of channel k. */
+/* out[channels] from planar sets c; then sh_closure_irradiance(order, out + k, n), of the same order, is sh_irradiance_closure of
+ * channel k. */
 SHI_INLINE void sh_closure_prepare(int order, int channels, const float *c, unsigned flags, sh_closure *out);
 SHI_INLINE float sh_closure_irradiance(int order, const sh_closure *closure, const float n[3]);
 
@@ -249,11 +256,12 @@ SHI_INLINE void sh_zonal_add(int order, const float zonal[3], const float dir[3]
  * Black, or R0 <= 0: 0. More than non-negative light can have: 1. Any magnitude, subnormal to 1e38. */
 SHI_FUNCTION float sh_directionality(const float *c);
 
-/* The mean direction of the light, unit length, from one channel of L1 or higher; returns |R1|. If R1 = 0: 0, and dir is +z. */
+/* The mean direction of the light, unit length, from one channel of L1 or higher; returns |R1|. If R1 = 0: 0, and dir is +z, as it is
+ * where R1 is NaN. */
 SHI_FUNCTION float sh_average_direction(const float *c, float dir[3]);
 
 /* The directional light and the ambient rest that have the same R0 and, for one channel, the same R1. dir is shared by the channels:
- * that of the sum of their R1 (+z if it is 0). intensity[k] is irradiance / pi at normal incidence, 4 max(0, R1.dir); ambient[k] is
+ * that of the sum of their R1 (+z if it is 0 or NaN). intensity[k] is irradiance / pi at normal incidence, 4 max(0, R1.dir); ambient[k] is
  * radiance, R0 - intensity / 4, not negative for a real light. c has `channels` sets of order >= 1. */
 SHI_FUNCTION void sh_dominant_light(int order, int channels, const float *c, float dir[3], float *intensity, float *ambient);
 
@@ -298,8 +306,8 @@ SHI_FUNCTION void sh_group_by_order(int channels, const float *c, size_t count, 
 SHI_INLINE int sh_is_grey(int order, int channels, const float *c, float tolerance);
 
 /* Whether to leave out a light of mean radiance `value` that comes from one direction, or is a convolution of such a light. It
- * adds at most 17/4 |value| to irradiance anywhere, which is taken from *budget: lights skipped together change irradiance by at
- * most what the budget was at first. */
+ * adds at most 17/4 |value| to irradiance anywhere, which is taken from *budget, rounded down: however many lights are skipped,
+ * together they change irradiance by at most what the budget was at first. */
 SHI_INLINE int sh_skip_light(float value, float *budget);
 
 /* The smallest height (power of two, half the width) of an equirectangular panorama, and width of a cube map's face, whose
@@ -330,7 +338,8 @@ SHI_INLINE void sh_swap_axes(int order, const float *c, const int axis[3], float
 SHI_INLINE void sh_z_up_to_y_up(int order, const float *c, float *out);                         /* (x, y, z) -> (x, z, -y) */
 SHI_INLINE void sh_y_up_to_z_up(int order, const float *c, float *out);                         /* its inverse: (x, -z, y) */
 
-/* Radiance from dir through a zonal kernel: c convolved, then looked at. With sh_zonal_ggx and the mirrored view: a specular probe. */
+/* Radiance from dir through a zonal kernel: c convolved, then looked at. With sh_zonal_ggx and the mirrored view: a specular probe.
+ * For many directions, sh_convolve once, then sh_radiance_batch. */
 SHI_INLINE float sh_radiance_zonal(int order, const float *c, const float zonal[3], const float dir[3]);
 
 /* The direction in which unit vector `view`, pointing to the eye, is mirrored by unit normal n: 2 (n.view) n - view. */
@@ -444,7 +453,7 @@ SHI_FUNCTION void sh_deinterleave(int order, int channels, const float *c, float
  *     vec4 p = vec4(n, 1.0), q = n.xyzz * n.yzzx;
  *     vec3 e = vec3(dot(s[0], p), dot(s[1], p), dot(s[2], p)) + vec3(dot(s[3], q), dot(s[4], q), dot(s[5], q))
  *            + s[6].rgb * (n.x * n.x - n.y * n.y);
- * HLSL: the same with float4 p = float4(n, 1.0), q = n.xyzz * n.yzzx; float3 e = float3(...) + float3(...) + ... */
+ * HLSL: the same with float4 p = float4(n, 1.0), q = n.xyzz * n.yzzx; float3 e = float3(...) + float3(...) + ... out may be c. */
 SHI_FUNCTION void sh_pack_shader(const float *c, float out[28]);
 
 /* `channels` planar sets as halves with one exponent: out has channels * SH_COUNT(order) halves, each coefficient * 2^-e, and e (two's
@@ -478,8 +487,9 @@ enum { SH_WARNING_UNDETERMINED = 1 };
  * regularization lambda >= 0 adds lambda l^2 (l + 1)^2 times the mean square of band l of the radiance to the mean square error: bands
  * that the samples do not need stay small. 1e-3 to 1e-1 for measured light; 0: none.
  * SH_OK; SH_WARNING_UNDETERMINED if some combination of coefficients hardly changes what is measured (by less than 1e-6 in mean square
- * where it is 1): c is then the smallest fit. SH_ERROR_ARGUMENT: NULL, bad order or channels, weights whose sum is not positive and
- * finite, lambda < 0 or NaN; nothing is written. Samples of light of `order` give it back to 1e-6 where the light is determined. */
+ * where its radiance has a mean square of 1): c is then the smallest fit. SH_ERROR_ARGUMENT: NULL, bad order or channels, weights whose
+ * sum is not positive and finite, lambda < 0 or not finite; nothing is written. Samples of light of `order` give it back to 3e-6 of
+ * its largest coefficient if they cover more than half of the sphere; to 1e-4 wherever there is no warning. */
 SHI_FUNCTION int sh_fit_samples(int order, int channels, const float *x, const float *y, const float *z, const float *value,
                                 const float *weight, size_t count, const float *zonal, float regularization, float *c);
 
@@ -586,8 +596,8 @@ SHI_FUNCTION int sh_image_channels(const sh_image *image);
  * Row 0 is at +z; column x is at azimuth 2 pi (x + 1/2) / width, from +x to +y: on the inside of the sphere, columns run to the left.
  * For a panorama as a camera sees it, columns to the right, pass SH_CLOCKWISE.
  * Texels are area averages: the basis is integrated over each exactly. With SH_POINT_TEXELS they are point samples: exact for
- * images of bands up to degree min(width, height) - 3, from 3 x 3 up. Error <= 1e-6 of the mean of |radiance|, reached by equal texels,
- * whose roundings add up; 1e-7 on photographs. report may be NULL. */
+ * images of bands up to degree min(width, height) - 3, from 3 x 3 up. Error <= 1e-6 of the mean of |radiance|; the largest seen is half
+ * of it, of a sun of one texel; 1e-7 on photographs. report may be NULL. */
 SHI_INLINE int sh_project_equirect(int order, const sh_image *image, unsigned flags, float *c, sh_report *report);
 
 /* Adds rows [first_row, first_row + row_count) to accum[sh_image_channels(image)], and to report: time slices, dirty tiles, half
@@ -728,7 +738,7 @@ SHI_INLINE float shi_clamp(float x, float lo, float hi) {
 SHI_INLINE float sh_irradiance_ao(int order, const float *c, const float n[3], float cos_angle) {
     float zonal[3];
     sh_zonal_ao(cos_angle, zonal);
-    return shi_reconstruct(order, c, n, zonal[0], 3.0f * zonal[1], 7.5f * zonal[2]);
+    return sh_radiance_zonal(order, c, zonal, n);
 }
 
 /* ---- Zonal kernels -------------------------------------------------------------------------------------------------------------- */
@@ -869,37 +879,6 @@ enum { SHI_LINEAR, SHI_CLOSURE_L1, SHI_CLOSURE_L1_BOUNDED, SHI_CLOSURE_L2, SHI_C
 
 SHI_INLINE float shi_larger(float a, float b) {
     return a > b ? a : b;
-}
-
-/* In double, so that what is left of 8 ulp is the coefficients' own rounding. */
-SHI_INLINE void sh_irradiance_bounds(int order, const float *c, const float n[3], float *lo, float *hi) {
-    const float linear = sh_irradiance(order, c, n);
-    const double r0 = (double)c[SH_R0], x = (double)n[0], y = (double)n[1], z = (double)n[2];
-    *lo = *hi = linear < 0.0f ? 0.0f : linear;
-    if (!(c[SH_R0] > SHI_BLACK))
-        return;
-    double m1 = 0.0, lower = 0.0, upper = 2.0 * r0, square = 0.0;
-    if (order >= SH_L1) {
-        const double u[3] = { (double)c[SH_X], (double)c[SH_Y], (double)c[SH_Z] };
-        m1 = u[0] * x + u[1] * y + u[2] * z;
-        lower = fabs(m1);
-        square = r0 * r0 - (u[0] * u[0] + u[1] * u[1] + u[2] * u[2]) + m1 * m1;
-    }
-    if (order >= SH_L2) {
-        const double xx = (double)c[SH_XX], yy = (double)c[SH_YY], third = r0 / 3.0;
-        const double cross = (double)c[SH_XY] * x * y + (double)c[SH_XZ] * x * z + (double)c[SH_YZ] * y * z;
-        const double m2 = (xx + third) * x * x + (yy + third) * y * y + (third - xx - yy) * z * z + 2.0 * cross;
-        lower = m2 > lower ? m2 : lower;
-        square = r0 * m2;
-    }
-    if (order >= SH_L1) {
-        square += r0 * r0 * (double)SHI_ULPS;
-        upper = sqrt(square < 0.0 ? 0.0 : square);
-    }
-    if (upper >= lower) {
-        *lo = (float)(2.0 * (lower + m1));
-        *hi = (float)(2.0 * (upper + m1));
-    }
 }
 
 /* The linear reconstruction, to be clamped at 0. */
@@ -1044,61 +1023,101 @@ SHI_INLINE void shi_symmetric_times(const float a[6], const float n[3], float ou
     out[2] = a[2] * n[0] + a[4] * n[1] + a[5] * n[2];
 }
 
-/* Any model at n. <t^2> is taken for its rounding error less, so that the bounds of a single direction close on it. */
-SHI_INLINE float shi_evaluate_model(const sh_closure *p, const float n[3]) {
+/* The model's r1.n, rounded once. */
+SHI_INLINE float shi_model_odd(const sh_closure *p, const float n[3]) {
+    return (float)((double)p->r1[0] * (double)n[0] + (double)p->r1[1] * (double)n[1] + (double)p->r1[2] * (double)n[2]);
+}
+
+SHI_INLINE float shi_evaluate_linear(int order, const sh_closure *p, const float n[3]) {
+    float an[3], sum = p->even[0] + shi_model_odd(p, n);
+    if (order >= SH_L2) {
+        shi_symmetric_times(p->r2, n, an);
+        sum += shi_dot3(an, n);
+    }
+    return sum < 0.0f ? 0.0f : sum;
+}
+
+/* <t^2> is taken for its rounding error less, so that the bounds of a single direction close on it. */
+SHI_INLINE float shi_evaluate_closure(int order, const sh_closure *p, const float n[3]) {
     const float *k = p->even;
-    const float v = (float)((double)p->r1[0] * (double)n[0] + (double)p->r1[1] * (double)n[1] + (double)p->r1[2] * (double)n[2]);
-    float an[3], t = v * v, even, upper, lower = fabsf(v);
-    switch (p->model) {
-    case SHI_CLOSURE_L1: return p->scale * (((t + k[2]) * t + k[1]) * t + k[0] + v);
-    case SHI_CLOSURE_L1_BOUNDED:
+    if (p->model == SHI_LINEAR)
+        return shi_evaluate_linear(order, p, n);
+    const float v = shi_model_odd(p, n);
+    float even, upper, lower = fabsf(v);
+    if (order <= SH_L1) {
+        const float t = v * v;
+        if (p->model == SHI_CLOSURE_L1)
+            return p->scale * (((t + k[2]) * t + k[1]) * t + k[0] + v);
         even = ((3003.0f / 65536.0f * t + k[2]) * t + k[1]) * t + k[0];
         upper = k[3] + t;
-        break;
-    case SHI_CLOSURE_L2:
-    case SHI_CLOSURE_L2_BOUNDED: {
+    } else {
+        float an[3];
         shi_symmetric_times(p->r2, n, an);
-        const float q = shi_dot3(an, n), a = shi_dot3(an, an);
+        const float q = shi_dot3(an, n), a = shi_dot3(an, an), m2 = 2.0f * q + k[3];
         even = k[0] + q * (k[1] + q * (3003.0f / 1024.0f * q - 105.0f / 64.0f)) + a * (15.0f / 16.0f - 819.0f / 256.0f * q);
-        const float m2 = 2.0f * q + k[3];
         lower = shi_larger(lower, m2);
         if (p->model == SHI_CLOSURE_L2)
             return p->scale * (shi_larger(even, lower) + v);
         upper = k[2] * m2;
-        break;
-    }
-    case SHI_GEOMERICS: return p->scale * (k[0] + k[1] * powf(shi_clamp(0.5f + v, 0.0f, 1.0f), k[2]));
-    case SHI_ZH3: even = p->scale * (k[0] + v * (k[1] + k[2] * v)); return even < 0.0f ? 0.0f : even;
-    default:
-        shi_symmetric_times(p->r2, n, an);
-        even = k[0] + v + shi_dot3(an, n);
-        return even < 0.0f ? 0.0f : even;
     }
     upper = sqrtf(shi_larger(upper, 0.0f));
     return p->scale * (shi_larger(even < upper ? even : upper, lower) + v);
 }
 
 SHI_INLINE float sh_closure_irradiance(int order, const sh_closure *closure, const float n[3]) {
-    (void)order;
-    return shi_evaluate_model(closure, n);
+    return shi_evaluate_closure(order, closure, n);
 }
 
 SHI_INLINE float sh_irradiance_closure(int order, const float *c, const float n[3]) {
     sh_closure closure;
     shi_prepare_closure(order, c, 0, &closure);
-    return shi_evaluate_model(&closure, n);
+    return shi_evaluate_closure(order, &closure, n);
+}
+
+/* In double, so that what is left of 8 ulp is the coefficients' own rounding. */
+SHI_INLINE void sh_irradiance_bounds(int order, const float *c, const float n[3], float *lo, float *hi) {
+    const double r0 = (double)c[SH_R0], x = (double)n[0], y = (double)n[1], z = (double)n[2];
+    sh_closure closure;
+    shi_prepare_closure(order, c, 0, &closure);
+    if (closure.model == SHI_LINEAR && !(order == SH_L0 && c[SH_R0] > SHI_BLACK)) {
+        *lo = *hi = shi_evaluate_linear(order, &closure, n);
+        return;
+    }
+    double m1 = 0.0, lower = 0.0, upper = 2.0 * r0;
+    if (order >= SH_L1) {
+        const double u[3] = { (double)c[SH_X], (double)c[SH_Y], (double)c[SH_Z] };
+        m1 = u[0] * x + u[1] * y + u[2] * z;
+        lower = fabs(m1);
+        double square = r0 * r0 - (u[0] * u[0] + u[1] * u[1] + u[2] * u[2]) + m1 * m1;
+        if (order >= SH_L2) {
+            const double xx = (double)c[SH_XX], yy = (double)c[SH_YY], third = r0 / 3.0;
+            const double cross = (double)c[SH_XY] * x * y + (double)c[SH_XZ] * x * z + (double)c[SH_YZ] * y * z;
+            const double m2 = (xx + third) * x * x + (yy + third) * y * y + (third - xx - yy) * z * z + 2.0 * cross;
+            lower = m2 > lower ? m2 : lower;
+            square = r0 * m2;
+        }
+        square += r0 * r0 * (double)SHI_ULPS;
+        upper = square > lower * lower ? sqrt(square) : lower;
+    }
+    *lo = (float)(2.0 * (lower + m1));
+    *hi = (float)(2.0 * (upper + m1));
 }
 
 SHI_INLINE float sh_irradiance_geomerics(const float *c, const float n[3]) {
-    sh_closure model;
-    shi_prepare_geomerics(c, &model);
-    return shi_evaluate_model(&model, n);
+    sh_closure m;
+    shi_prepare_geomerics(c, &m);
+    if (m.model == SHI_LINEAR)
+        return shi_evaluate_linear(SH_L1, &m, n);
+    return m.scale * (m.even[0] + m.even[1] * powf(shi_clamp(0.5f + shi_model_odd(&m, n), 0.0f, 1.0f), m.even[2]));
 }
 
 SHI_INLINE float sh_irradiance_zh3(const float *c, const float n[3]) {
-    sh_closure model;
-    shi_prepare_zh3(c, &model);
-    return shi_evaluate_model(&model, n);
+    sh_closure m;
+    shi_prepare_zh3(c, &m);
+    if (m.model == SHI_LINEAR)
+        return shi_evaluate_linear(SH_L1, &m, n);
+    const float v = shi_model_odd(&m, n), sum = m.scale * (m.even[0] + v * (m.even[1] + m.even[2] * v));
+    return sum < 0.0f ? 0.0f : sum;
 }
 
 /* ---- Extrema, realizability, de-ringing -----------------------------------------------------------------------------------------
@@ -1520,10 +1539,12 @@ SHI_INLINE int sh_is_grey(int order, int channels, const float *c, float toleran
 
 /* 17/4 = 1 + 2 + 15/8 * 2/3. */
 SHI_INLINE int sh_skip_light(float value, float *budget) {
-    const float most = 4.25f * fabsf(value);
-    if (!(most <= *budget))
+    const double rest = (double)*budget - 4.25 * fabs((double)value);
+    if (!(rest >= 0.0))
         return 0;
-    *budget -= most;
+    *budget = (float)rest;
+    if ((double)*budget > rest) /* never rounded up: any number of lights spend what they cost */
+        *budget -= *budget * (1.0f / 8388608.0f);
     return 1;
 }
 
@@ -1742,7 +1763,7 @@ SHI_INLINE void sh_rotate(int order, const float *c, const float m[9], float *ou
 
 SHI_FUNCTION void sh_rotation_from_quaternion(const float q[4], float m[9]) {
     const double x = (double)q[0], y = (double)q[1], z = (double)q[2], w = (double)q[3];
-    const double square = x * x + y * y + z * z + w * w, s = square > 0.0 ? 2.0 / square : 0.0;
+    const double square = x * x + y * y + z * z + w * w, s = square == 0.0 ? 0.0 : 2.0 / square;
     shi_set3((float)(1 - s * (y * y + z * z)), (float)(s * (x * y - w * z)), (float)(s * (x * z + w * y)), m);
     shi_set3((float)(s * (x * y + w * z)), (float)(1 - s * (x * x + z * z)), (float)(s * (y * z - w * x)), m + 3);
     shi_set3((float)(s * (x * z - w * y)), (float)(s * (y * z + w * x)), (float)(1 - s * (x * x + y * y)), m + 6);
@@ -1792,7 +1813,8 @@ SHI_INLINE void sh_reflect(const float view[3], const float n[3], float out[3]) 
 }
 
 SHI_FUNCTION void sh_zonal_cosine_power(float exponent, float zonal[3]) {
-    shi_set3(1.0f, 1.0f - 1.0f / (exponent + 2.0f), 1.0f - 3.0f / (exponent + 3.0f), zonal);
+    const float k2 = exponent < 1.0f ? exponent / (exponent + 3.0f) : 1.0f - 3.0f / (exponent + 3.0f); /* infinity: 1 */
+    shi_set3(1.0f, 1.0f - 1.0f / (exponent + 2.0f), k2, zonal);
 }
 
 SHI_FUNCTION void sh_zonal_sharpness(float sharpness, float zonal[3]) {
@@ -1978,7 +2000,7 @@ SHI_FUNCTION void shi_edge_add(const double a[3], const double b[3], double inte
     shi_along(b, -1.0, a, edge);
     shi_cross(la < lb ? a : b, edge, n);
     const double cross = sqrt(shi_dot3d(n, n));
-    if (!(cross > 0.0))
+    if (cross <= 0.0)
         return;
     const double angle = atan2(cross, dot), half_tangent = cross / (la * lb + dot);
     for (int i = 0; i < 3; i++) {
@@ -2104,13 +2126,14 @@ SHI_FUNCTION void sh_add_rectangle(int order, int channels, const float center[3
     shi_add_integral(order, channels, integral, radiance, c);
 }
 
-/* Points on the rim for an error of 1e-8. The integrand's nearest pole is at azimuth + i y, where |p|^2 = 0:
- * cosh y - 1 = gap^2 / (2 radius * distance from the axis). */
+/* Points on the rim for an error of 1e-8 of the solid angle, which falls with the height over the disk's plane. The integrand's nearest
+ * pole is at azimuth + i y, where |p|^2 = 0: cosh y - 1 = gap^2 / (2 radius * distance from the axis). */
 SHI_FUNCTION int shi_rim_points(const double center[3], const double axis[3], double radius) {
     const double height = shi_dot3d(center, axis), off = sqrt(fmax(0.0, shi_dot3d(center, center) - height * height));
     const double gap = (off - radius) * (off - radius) + height * height, span = 2.0 * radius * off;
     const double t = gap < 100.0 * span ? gap / span : 100.0, y = log1p(t + sqrt(t * (t + 2.0)));
-    return y > 0.02 ? 16 + (int)(20.0 / y) : 1016;
+    const double edge_on = gap > 0.0 ? 0.5 * log1p(gap / (height * height + 1e-12 * gap)) : 0.0;
+    return 16 + (int)((20.0 + edge_on) / fmax(y, 0.02));
 }
 
 /* Around the rim p of a disk: f = integral of u x du, R2 from (u x du) u', and the solid angle from axis.(u x du) / (1 + axis.u), whose
@@ -2206,7 +2229,7 @@ SHI_FUNCTION size_t sh_add_spheres(int order, int channels, const float *spheres
         for (int k = 0; k < channels; k++)
             most = fabs((double)radiance[k]) <= most || most != most ? most : fabs((double)radiance[k]); /* NaN stays */
         const double square = shi_dot3d(p, p), rr = (double)spheres[3] * (double)spheres[3];
-        const double bound = rr < square ? 17.0 / 16.0 * most * rr / square : most;
+        const double bound = rr >= square ? most : 17.0 / 16.0 * most * rr / square;
         if (bound * (double)(count - i) <= (double)tolerance - skipped) { /* its share of what is left, for it and all that follow */
             skipped += bound;
             continue;
@@ -2330,8 +2353,10 @@ SHI_FUNCTION void sh_deinterleave(int order, int channels, const float *c, float
 }
 
 SHI_FUNCTION void sh_pack_shader(const float *c, float out[28]) {
-    for (int k = 0; k < 3; k++, c += SH_COUNT(SH_L2)) {
-        const float *a = c, zz = -0.9375f * (a[SH_XX] + a[SH_YY]); /* 15/16 */
+    float in[3 * SH_COUNT(SH_L2)]; /* out may be c */
+    memcpy(in, c, sizeof in);
+    for (int k = 0; k < 3; k++) {
+        const float *a = in + k * SH_COUNT(SH_L2), zz = -0.9375f * (a[SH_XX] + a[SH_YY]); /* 15/16 */
         shi_set3(2.0f * a[SH_X], 2.0f * a[SH_Y], 2.0f * a[SH_Z], out + 4 * k);
         out[4 * k + 3] = a[SH_R0] - zz;
         shi_set3(3.75f * a[SH_XY], 3.75f * a[SH_YZ], 3.0f * zz, out + 12 + 4 * k);
@@ -2422,7 +2447,8 @@ SHI_FUNCTION void sh_pack_half(int order, int channels, const float *c, uint16_t
 
 SHI_FUNCTION void sh_unpack_half(int order, int channels, const uint16_t *in, float *out) {
     const int count = channels * SH_COUNT(order), word = in[count];
-    const double scale = shi_power_of_two(word < 0x8000 ? word : word - 0x10000);
+    const int exponent = word < 0x8000 ? word : word - 0x10000;
+    const double scale = shi_power_of_two(exponent < -300 ? -300 : exponent > 300 ? 300 : exponent); /* beyond: 0 or infinity */
     for (int i = 0; i < count; i++)
         out[i] = (float)(scale * (double)shi_from_half(in[i]));
 }
@@ -2570,6 +2596,22 @@ typedef struct shi_fit {
     size_t count;
 } shi_fit;
 
+/* The least eigenvalue of a matrix that shi_cholesky has factored, by inverse iteration; where many are near it, not below it. */
+SHI_FUNCTION double shi_cholesky_least(double m[9][9], int n) {
+    double x[9], square = 0.0;
+    for (int i = 0; i < n; i++)
+        x[i] = 1.0 / (i + 2.0);
+    for (int step = 0; step < 8; step++) {
+        shi_cholesky_solve(m, n, x);
+        square = 0.0;
+        for (int i = 0; i < n; i++)
+            square += x[i] * x[i];
+        for (int i = 0; i < n; i++)
+            x[i] /= sqrt(square);
+    }
+    return 1.0 / sqrt(square);
+}
+
 /* The weight of sample i, and its row. */
 SHI_FUNCTION double shi_fit_sample(const shi_fit *fit, size_t i, double row[9]) {
     const double dir[3] = { (double)fit->x[i], (double)fit->y[i], (double)fit->z[i] };
@@ -2624,7 +2666,7 @@ SHI_FUNCTION int sh_fit_samples(int order, int channels, const float *x, const f
     double total = shi_fit_matrix(&fit, lambda, 0.0, m);
     if (!(total > 0.0 && total < 1e300))
         return SH_ERROR_ARGUMENT;
-    if (!shi_cholesky(m, SH_COUNT(order), least)) {
+    if (!shi_cholesky(m, SH_COUNT(order), 0.0) || !(shi_cholesky_least(m, SH_COUNT(order)) >= least)) {
         status = SH_WARNING_UNDETERMINED;
         total = shi_fit_matrix(&fit, lambda, least, m);
         if (!shi_cholesky(m, SH_COUNT(order), 0.0))
@@ -3134,7 +3176,7 @@ SHI_INLINE size_t shi_hide(size_t n) {
 SHI_INLINE void shi_prefetch_line(const void *p) {
 #if SH_SIMD == SH_SIMD_AVX512 || SH_SIMD == SH_SIMD_AVX2 || SH_SIMD == SH_SIMD_SSE2
     _mm_prefetch((const char *)p, _MM_HINT_T0);
-#elif defined(__GNUC__)
+#elif defined(__GNUC__) && !defined(__CUDACC__)
     __builtin_prefetch(p);
 #else
     (void)p;
@@ -3256,10 +3298,39 @@ SHI_INLINE void shi_copy_padded(const float *in, size_t count, float *out) {
         out[i] = 0.0f;
 }
 
+/* A block's directions: `count` of three arrays, or of items `stride` bytes apart. */
+SHI_INLINE void shi_block_copy(const float *x, const float *y, const float *z, size_t count, shi_block *block) {
+    shi_copy_padded(x, count, block->x);
+    shi_copy_padded(y, count, block->y);
+    shi_copy_padded(z, count, block->z);
+}
+
+SHI_INLINE void shi_block_gather(const unsigned char *in, size_t stride, size_t count, shi_block *block) {
+    for (size_t j = 0; j < shi_round_up(count); j++) {
+        float d[3] = { 0.0f, 0.0f, 0.0f };
+        if (j < count)
+            memcpy(d, in + j * stride, sizeof d);
+        block->x[j] = d[0];
+        block->y[j] = d[1];
+        block->z[j] = d[2];
+    }
+}
+
+/* A block's results to floats `stride` bytes apart. */
+SHI_INLINE void shi_block_scatter(const shi_block *block, size_t count, unsigned char *out, size_t stride) {
+    for (size_t j = 0; j < count; j++)
+        memcpy(out + j * stride, block->out + j, sizeof(float));
+}
+
 /* Whether two arrays of floats share memory. */
 SHI_INLINE int shi_overlap(const float *a, size_t a_count, const float *b, size_t b_count) {
     const uintptr_t p = (uintptr_t)a, q = (uintptr_t)b;
     return p < q + b_count * sizeof *b && q < p + a_count * sizeof *a;
+}
+
+/* Whether a batch's output shares memory with one of its three inputs. */
+SHI_INLINE int shi_overlaps_any(const float *x, const float *y, const float *z, size_t count, const float *out, size_t total) {
+    return shi_overlap(x, count, out, total) || shi_overlap(y, count, out, total) || shi_overlap(z, count, out, total);
 }
 
 SHI_INLINE size_t shi_at_most(size_t count, size_t limit) {
@@ -3278,18 +3349,14 @@ typedef struct shi_soa {
 SHI_INLINE void shi_evaluate_soa(int order, const shi_soa *job) {
     const float *x = job->x, *y = job->y, *z = job->z;
     const size_t count = job->count, total = (size_t)job->channels * count;
-    const int copy = shi_overlap(x, count, job->out, total) || shi_overlap(y, count, job->out, total) ||
-                     shi_overlap(z, count, job->out, total);
+    const int copy = shi_overlaps_any(x, y, z, count, job->out, total);
     for (size_t i = 0; i < count; i += SHI_BATCH) {
         const size_t n = shi_at_most(count - i, SHI_BATCH);
         const size_t whole = copy ? 0 : n / SHI_LANES * SHI_LANES, rest = n - whole; /* in place; through a copy */
         float fold[2][SH_COUNT(SH_L2)]; /* the next channel is folded while this one is evaluated */
         shi_block block;
-        if (rest) {
-            shi_copy_padded(x + i + whole, rest, block.x);
-            shi_copy_padded(y + i + whole, rest, block.y);
-            shi_copy_padded(z + i + whole, rest, block.z);
-        }
+        if (rest)
+            shi_block_copy(x + i + whole, y + i + whole, z + i + whole, rest, &block);
         shi_polynomial_fold(order, job->c, job->w1, job->w2, fold[0]);
         for (int k = 0; k < job->channels; k++) {
             const float *polynomial = fold[k % 2];
@@ -3351,20 +3418,12 @@ SHI_INLINE void shi_evaluate_aos_blocks(int order, const shi_aos *job) {
     for (size_t i = 0; i < job->count; i += SHI_BATCH) {
         const size_t n = shi_at_most(job->count - i, SHI_BATCH);
         shi_block block;
-        for (size_t j = 0; j < shi_round_up(n); j++) {
-            float d[3] = { 0.0f, 0.0f, 0.0f };
-            if (j < n)
-                memcpy(d, job->in + (i + j) * job->in_stride, sizeof d);
-            block.x[j] = d[0];
-            block.y[j] = d[1];
-            block.z[j] = d[2];
-        }
+        shi_block_gather(job->in + i * job->in_stride, job->in_stride, n, &block);
         for (int k = 0; k < job->channels; k++) {
             float polynomial[SH_COUNT(SH_L2)];
             shi_polynomial_fold(order, job->c + k * SH_COUNT(order), job->w1, job->w2, polynomial);
             shi_evaluate(order, polynomial, block.x, block.y, block.z, block.out, shi_round_up(n), NULL, NULL);
-            for (size_t j = 0; j < n; j++)
-                memcpy(job->out + (i + j) * job->out_stride + (size_t)k * sizeof(float), block.out + j, sizeof(float));
+            shi_block_scatter(&block, n, job->out + i * job->out_stride + (size_t)k * sizeof(float), job->out_stride);
         }
     }
 }
@@ -4383,21 +4442,26 @@ SHI_FUNCTION int shi_group_end(int order, const shi_reader *reader, const shi_gr
 }
 
 /* Adds a group's moments of one channel to the nine sums. */
-SHI_FUNCTION void shi_equirect_add(const shi_reader *reader, const shi_columns *columns, const double moment[SHI_MOMENTS],
+SHI_INLINE void shi_equirect_add(int order, const shi_reader *reader, const shi_columns *columns, const double moment[SHI_MOMENTS],
                                    sh_accum *accum) {
     const double scale = (double)reader->scale, sense = reader->flags & SH_CLOCKWISE ? -1.0 : 1.0;
     const double f0 = columns->mean[0] / scale, f1 = columns->mean[1] / scale, f2 = columns->mean[2] / scale;
-    const double all = f0 * moment[SHI_M_1], zz = f0 * moment[SHI_M_ZZ], cos2 = f2 * moment[SHI_M_COS2];
+    const double all = f0 * moment[SHI_M_1];
     double *sum = accum->sum;
     sum[SH_R0] += all;
-    sum[SH_X] += f1 * moment[SHI_M_X];
-    sum[SH_Y] += sense * f1 * moment[SHI_M_Y];
-    sum[SH_Z] += f0 * moment[SHI_M_Z];
-    sum[SH_XX] += (all - zz) / 2 + cos2 - all / 3;
-    sum[SH_XY] += sense * f2 * moment[SHI_M_SIN2];
-    sum[SH_XZ] += f1 * moment[SHI_M_XZ];
-    sum[SH_YY] += (all - zz) / 2 - cos2 - all / 3;
-    sum[SH_YZ] += sense * f1 * moment[SHI_M_YZ];
+    if (order >= SH_L1) {
+        sum[SH_X] += f1 * moment[SHI_M_X];
+        sum[SH_Y] += sense * f1 * moment[SHI_M_Y];
+        sum[SH_Z] += f0 * moment[SHI_M_Z];
+    }
+    if (order >= SH_L2) {
+        const double zz = f0 * moment[SHI_M_ZZ], cos2 = f2 * moment[SHI_M_COS2];
+        sum[SH_XX] += (all - zz) / 2 + cos2 - all / 3;
+        sum[SH_XY] += sense * f2 * moment[SHI_M_SIN2];
+        sum[SH_XZ] += f1 * moment[SHI_M_XZ];
+        sum[SH_YY] += (all - zz) / 2 - cos2 - all / 3;
+        sum[SH_YZ] += sense * f1 * moment[SHI_M_YZ];
+    }
 }
 
 /* The arguments of a projection. */
@@ -4476,7 +4540,7 @@ SHI_INLINE int shi_equirect_rows(int order, const shi_rows *job) {
                 break;
         }
         for (int k = 0; k < reader.layout.channels; k++) {
-            shi_equirect_add(&reader, &columns, moment[0][k], job->accum + k);
+            shi_equirect_add(order, &reader, &columns, moment[0][k], job->accum + k);
             for (int r = 0; r < rows; r++)
                 job->accum[k].weight += w[r].one;
         }
@@ -4520,16 +4584,14 @@ typedef struct shi_plane {
 } shi_plane;
 
 SHI_FUNCTION shi_plane shi_plane_make(const double p[3], const double q[3]) {
-    static const int pair[5][2] = { { 0, 0 }, { 0, 1 }, { 0, 2 }, { 1, 1 }, { 1, 2 } };
-    const double pp = p[0] * p[0] + p[1] * p[1] + p[2] * p[2], qq = q[0] * q[0] + q[1] * q[1] + q[2] * q[2];
-    const double pq = p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
+    const double pp = shi_dot3d(p, p), qq = shi_dot3d(q, q), pq = shi_dot3d(p, q);
     shi_plane plane;
     for (int i = 0; i < 3; i++) {
         plane.first[i][0] = (float)p[i];
         plane.first[i][1] = (float)q[i];
     }
     for (int m = 0; m < 5; m++) { /* P P' wrr + (P Q' + Q P') wrru + Q Q' (w - |P|^2 wrr - 2 P.Q wrru) / |Q|^2 */
-        const int i = pair[m][0], j = pair[m][1];
+        const int i = m / 3, j = m - 2 * i;
         const double square = q[i] * q[j] / qq;
         plane.second[m][0] = (float)square;
         plane.second[m][1] = (float)(p[i] * p[j] - square * pp);
@@ -4753,15 +4815,20 @@ SHI_INLINE double shi_octahedron_row(int order, shi_reader *reader, int y, int m
 /* On a cube, four rows at a time: rows v and -v of two opposite faces. With C the direction of the first face's centre, and Q and V of
  * its u and v, the directions are (C + v V + u Q) / rho, and on the opposite face the same but for two signs: C's and Q's (faces x and
  * z), or C's alone (faces y, once rows v and -v of the second face have changed places). So their sums and differences by v and by
- * face need eight sums in place of twenty. One frame of axes Q, V, C for each pair of faces: */
-static const struct shi_frame {
+ * face need eight sums in place of twenty. One frame of axes Q, V, C for each pair of faces. */
+typedef struct shi_frame {
     signed char axis[3], sign[3]; /* of Q, V, C */
     signed char q_flips, swapped; /* on the opposite face */
-} shi_frames[SHI_FRAMES] = {
-    { { 2, 1, 0 }, { -1, -1, 1 }, 1, 0 },
-    { { 0, 2, 1 }, { 1, 1, 1 }, 0, 1 },
-    { { 0, 1, 2 }, { 1, -1, 1 }, 1, 0 },
-};
+} shi_frame;
+
+SHI_INLINE const shi_frame *shi_frame_at(int i) {
+    static const shi_frame frames[SHI_FRAMES] = {
+        { { 2, 1, 0 }, { -1, -1, 1 }, 1, 0 },
+        { { 0, 2, 1 }, { 1, 1, 1 }, 0, 1 },
+        { { 0, 1, 2 }, { 1, -1, 1 }, 1, 0 },
+    };
+    return &frames[i];
+}
 
 /* The eight sums, and the moments of SHI_MOMENTS in a frame, as an order is a prefix. */
 enum { SHI_F_1, SHI_F_Q, SHI_F_V, SHI_F_C, SHI_F_CC, SHI_F_CQ, SHI_F_CV, SHI_F_QV, SHI_FRAME_SUMS, SHI_F_VV = SHI_FRAME_SUMS };
@@ -4826,7 +4893,7 @@ SHI_INLINE void shi_cube_spread(int order, float v, const shi_v s[SHI_FRAME_SUMS
 SHI_INLINE void shi_cube_columns(int order, shi_reader *reader, const sh_image *face, int frame, int y, int mirrored, int x, int count,
                                  const shi_factors *factors, shi_v total[SHI_PHASES][SHI_FRAME_SUMS], shi_v *signs) {
     static const float black[SHI_BLOCK * 4] = { 0 };
-    const struct shi_frame *f = &shi_frames[frame];
+    const shi_frame *f = shi_frame_at(frame);
     const int size = face->width, interleave = reader->layout.interleave, phases = shi_phases(interleave);
     const int padded = (int)shi_round_up((size_t)count), values = padded * interleave;
     /* Of the next rows, a block asks for two of four, for itself and its neighbour. */
@@ -4879,8 +4946,7 @@ SHI_INLINE double shi_cube_row(int order, shi_reader *reader, const sh_image *fa
 }
 
 /* A frame's moments, in its axes, to those of SHI_MOMENTS in x, y, z, added. */
-SHI_FUNCTION void shi_frame_turn(const struct shi_frame *frame, const double m[SHI_MOMENTS], double moment[SHI_MOMENTS]) {
-    static const int pair[5][2] = { { 0, 0 }, { 0, 1 }, { 0, 2 }, { 1, 1 }, { 1, 2 } };
+SHI_FUNCTION void shi_frame_turn(const shi_frame *frame, const double m[SHI_MOMENTS], double moment[SHI_MOMENTS]) {
     const double qq = m[SHI_F_1] - m[SHI_F_CC] - m[SHI_F_VV];
     const double second[3][3] = { { qq, m[SHI_F_QV], m[SHI_F_CQ] },
                                   { m[SHI_F_QV], m[SHI_F_VV], m[SHI_F_CV] },
@@ -4892,7 +4958,7 @@ SHI_FUNCTION void shi_frame_turn(const struct shi_frame *frame, const double m[S
     for (int i = 0; i < 3; i++)
         moment[SH_X + i] += frame->sign[at[i]] * m[SHI_F_Q + at[i]];
     for (int i = 0; i < 5; i++) {
-        const int a = at[pair[i][0]], b = at[pair[i][1]];
+        const int a = at[i / 3], b = at[i - i / 3 * 2];
         moment[SH_XX + i] += frame->sign[a] * frame->sign[b] * second[a][b];
     }
 }
@@ -4942,7 +5008,7 @@ SHI_INLINE int shi_plane_rows(int order, int kind, const shi_rows *job) {
         for (int k = 0; k < reader.layout.channels; k++) {
             double turned[SHI_MOMENTS] = { 0 };
             for (int f = 0; kind == SHI_CUBE && f < frames; f++)
-                shi_frame_turn(&shi_frames[f], moment[f][k], turned);
+                shi_frame_turn(shi_frame_at(f), moment[f][k], turned);
             shi_plane_finish(order, (double)reader.scale, kind == SHI_CUBE ? turned : moment[0][k], job->accum + k);
             job->accum[k].weight += share;
         }
@@ -5059,7 +5125,7 @@ SHI_INLINE shi_v shi_clamped_v(const shi_model *m, shi_v v, shi_v even, shi_v lo
     return shi_mul(m->scale, shi_add(shi_max(shi_min(even, shi_sqrt(upper)), lower), v));
 }
 
-/* shi_evaluate_model, for a literal model. */
+/* What the functions above evaluate, for a literal model. */
 SHI_INLINE shi_v shi_model_v(int model, const shi_model *m, shi_v x, shi_v y, shi_v z) {
     const shi_v *k = m->even, *a = m->r2, v = shi_dot_v(m->r1[0], m->r1[1], m->r1[2], x, y, z), zero = shi_splat(0.0f);
     if (model == SHI_GEOMERICS) {
@@ -5097,164 +5163,177 @@ SHI_INLINE void shi_model_loop(int model, const sh_closure *p, const float *x, c
         shi_store(out + i, shi_model_v(model, &m, shi_load(x + i), shi_load(y + i), shi_load(z + i)));
 }
 
-/* One channel of `count` normals, a multiple of SHI_LANES. */
-SHI_FUNCTION void shi_model_run(const sh_closure *p, const float *x, const float *y, const float *z, float *out, size_t count) {
+/* One channel of `count` normals, a multiple of SHI_LANES, by the models that an order and a family can have. */
+SHI_FUNCTION void shi_run_linear(const sh_closure *p, const float *x, const float *y, const float *z, float *out, size_t count) {
+    shi_model_loop(SHI_LINEAR, p, x, y, z, out, count);
+}
+
+SHI_FUNCTION void shi_run_closure_l1(const sh_closure *p, const float *x, const float *y, const float *z, float *out, size_t count) {
     switch (p->model) {
     case SHI_CLOSURE_L1: shi_model_loop(SHI_CLOSURE_L1, p, x, y, z, out, count); break;
     case SHI_CLOSURE_L1_BOUNDED: shi_model_loop(SHI_CLOSURE_L1_BOUNDED, p, x, y, z, out, count); break;
+    default: shi_run_linear(p, x, y, z, out, count); break;
+    }
+}
+
+SHI_FUNCTION void shi_run_closure_l2(const sh_closure *p, const float *x, const float *y, const float *z, float *out, size_t count) {
+    switch (p->model) {
     case SHI_CLOSURE_L2: shi_model_loop(SHI_CLOSURE_L2, p, x, y, z, out, count); break;
     case SHI_CLOSURE_L2_BOUNDED: shi_model_loop(SHI_CLOSURE_L2_BOUNDED, p, x, y, z, out, count); break;
-    case SHI_GEOMERICS: shi_model_loop(SHI_GEOMERICS, p, x, y, z, out, count); break;
-    case SHI_ZH3: shi_model_loop(SHI_ZH3, p, x, y, z, out, count); break;
-    default: shi_model_loop(SHI_LINEAR, p, x, y, z, out, count); break;
+    default: shi_run_linear(p, x, y, z, out, count); break;
     }
+}
+
+SHI_FUNCTION void shi_run_geomerics(const sh_closure *p, const float *x, const float *y, const float *z, float *out, size_t count) {
+    if (p->model == SHI_GEOMERICS)
+        shi_model_loop(SHI_GEOMERICS, p, x, y, z, out, count);
+    else
+        shi_run_linear(p, x, y, z, out, count);
+}
+
+SHI_FUNCTION void shi_run_zh3(const sh_closure *p, const float *x, const float *y, const float *z, float *out, size_t count) {
+    if (p->model == SHI_ZH3)
+        shi_model_loop(SHI_ZH3, p, x, y, z, out, count);
+    else
+        shi_run_linear(p, x, y, z, out, count);
+}
+
+enum { SHI_FAMILY_CLOSURE, SHI_FAMILY_GEOMERICS, SHI_FAMILY_ZH3 };
+
+SHI_INLINE void shi_run_model(int order, int family, const sh_closure *p, const float *x, const float *y, const float *z, float *out,
+                              size_t count) {
+    if (family == SHI_FAMILY_GEOMERICS)
+        shi_run_geomerics(p, x, y, z, out, count);
+    else if (family == SHI_FAMILY_ZH3)
+        shi_run_zh3(p, x, y, z, out, count);
+    else if (order == SH_L0)
+        shi_run_linear(p, x, y, z, out, count);
+    else if (order == SH_L1)
+        shi_run_closure_l1(p, x, y, z, out, count);
+    else
+        shi_run_closure_l2(p, x, y, z, out, count);
+}
+
+SHI_INLINE void shi_prepare_model(int order, int family, const float *c, sh_closure *out) {
+    if (family == SHI_FAMILY_GEOMERICS)
+        shi_prepare_geomerics(c, out);
+    else if (family == SHI_FAMILY_ZH3)
+        shi_prepare_zh3(c, out);
+    else
+        shi_prepare_closure(order, c, 0, out);
 }
 
 /* Where a batch's models come from: prepared by the caller; or coefficients, prepared once where there are few channels, else as
  * each block needs them. */
 typedef struct shi_source {
-    int order, family, channels;
+    int channels;
     const float *c;
     const sh_closure *prepared;
     sh_closure kept[SH_MAX_CHANNELS];
 } shi_source;
 
-enum { SHI_FAMILY_CLOSURE, SHI_FAMILY_GEOMERICS, SHI_FAMILY_ZH3 };
-
-SHI_INLINE void shi_source_prepare(const shi_source *s, int channel, sh_closure *out) {
-    const float *c = s->c + channel * SH_COUNT(s->order);
-    if (s->family == SHI_FAMILY_GEOMERICS)
-        shi_prepare_geomerics(c, out);
-    else if (s->family == SHI_FAMILY_ZH3)
-        shi_prepare_zh3(c, out);
-    else
-        shi_prepare_closure(s->order, c, 0, out);
-}
-
 SHI_INLINE void shi_source_init(int order, int family, int channels, const float *c, const sh_closure *prepared, shi_source *s) {
-    s->order = order;
-    s->family = family;
     s->channels = channels;
     s->c = c;
     s->prepared = prepared;
     if (!prepared && channels <= SH_MAX_CHANNELS) {
         for (int k = 0; k < channels; k++)
-            shi_source_prepare(s, k, s->kept + k);
+            shi_prepare_model(order, family, c + k * SH_COUNT(order), s->kept + k);
         s->prepared = s->kept;
     }
 }
 
-SHI_INLINE const sh_closure *shi_source_get(const shi_source *s, int channel, sh_closure *scratch) {
+SHI_INLINE const sh_closure *shi_source_get(int order, int family, const shi_source *s, int channel, sh_closure *scratch) {
     if (s->prepared)
         return s->prepared + channel;
-    shi_source_prepare(s, channel, scratch);
+    shi_prepare_model(order, family, s->c + channel * SH_COUNT(order), scratch);
     return scratch;
 }
 
-SHI_INLINE void shi_models_soa(const shi_source *source, const float *x, const float *y, const float *z, float *out, size_t count) {
-    const size_t total = (size_t)source->channels * count;
-    const int copy = shi_overlap(x, count, out, total) || shi_overlap(y, count, out, total) || shi_overlap(z, count, out, total);
+SHI_INLINE void shi_models_soa(int order, int family, int channels, const float *c, const sh_closure *prepared, const float *x,
+                               const float *y, const float *z, float *out, size_t count) {
+    const size_t total = (size_t)channels * count;
+    const int copy = shi_overlaps_any(x, y, z, count, out, total);
+    shi_source source;
+    shi_source_init(order, family, channels, c, prepared, &source);
     for (size_t i = 0; i < count; i += SHI_BATCH) {
         const size_t n = shi_at_most(count - i, SHI_BATCH), whole = copy ? 0 : n / SHI_LANES * SHI_LANES, rest = n - whole;
         shi_block block;
-        if (rest) {
-            shi_copy_padded(x + i + whole, rest, block.x);
-            shi_copy_padded(y + i + whole, rest, block.y);
-            shi_copy_padded(z + i + whole, rest, block.z);
-        }
-        for (int k = 0; k < source->channels; k++) {
+        if (rest)
+            shi_block_copy(x + i + whole, y + i + whole, z + i + whole, rest, &block);
+        for (int k = 0; k < channels; k++) {
             sh_closure scratch;
-            const sh_closure *p = shi_source_get(source, k, &scratch);
+            const sh_closure *p = shi_source_get(order, family, &source, k, &scratch);
             float *to = out + (size_t)k * count + i;
             if (whole)
-                shi_model_run(p, x + i, y + i, z + i, to, whole);
+                shi_run_model(order, family, p, x + i, y + i, z + i, to, whole);
             if (rest) {
-                shi_model_run(p, block.x, block.y, block.z, block.out, shi_round_up(rest));
+                shi_run_model(order, family, p, block.x, block.y, block.z, block.out, shi_round_up(rest));
                 memcpy(to + whole, block.out, rest * sizeof *to);
             }
         }
     }
 }
 
-SHI_INLINE void shi_models_aos(const shi_source *source, const float *n, size_t n_stride, float *out, size_t out_stride, size_t count) {
+SHI_INLINE void shi_models_aos(int order, int family, int channels, const float *c, const sh_closure *prepared, const float *n,
+                               size_t n_stride, float *out, size_t out_stride, size_t count) {
     const size_t in_step = n_stride ? n_stride : 3 * sizeof *n;
-    const size_t out_step = out_stride ? out_stride : (size_t)source->channels * sizeof *out;
+    const size_t out_step = out_stride ? out_stride : (size_t)channels * sizeof *out;
+    shi_source source;
+    shi_source_init(order, family, channels, c, prepared, &source);
     for (size_t i = 0; i < count; i += SHI_BATCH) {
         const size_t some = shi_at_most(count - i, SHI_BATCH);
         const unsigned char *in = (const unsigned char *)n + i * in_step;
         unsigned char *to = (unsigned char *)out + i * out_step;
         shi_block block;
-        for (size_t j = 0; j < shi_round_up(some); j++) {
-            float d[3] = { 0.0f, 0.0f, 0.0f };
-            if (j < some)
-                memcpy(d, in + j * in_step, sizeof d);
-            block.x[j] = d[0];
-            block.y[j] = d[1];
-            block.z[j] = d[2];
-        }
-        for (int k = 0; k < source->channels; k++) {
+        shi_block_gather(in, in_step, some, &block);
+        for (int k = 0; k < channels; k++) {
             sh_closure scratch;
-            shi_model_run(shi_source_get(source, k, &scratch), block.x, block.y, block.z, block.out, shi_round_up(some));
-            for (size_t j = 0; j < some; j++)
-                memcpy(to + j * out_step + (size_t)k * sizeof *out, block.out + j, sizeof *out);
+            const sh_closure *p = shi_source_get(order, family, &source, k, &scratch);
+            shi_run_model(order, family, p, block.x, block.y, block.z, block.out, shi_round_up(some));
+            shi_block_scatter(&block, some, to + (size_t)k * sizeof *out, out_step);
         }
     }
 }
 
 SHI_INLINE void sh_irradiance_closure_batch(int order, int channels, const float *c, const float *x, const float *y, const float *z,
                                             float *out, size_t count) {
-    shi_source source;
-    shi_source_init(order, SHI_FAMILY_CLOSURE, channels, c, NULL, &source);
-    shi_models_soa(&source, x, y, z, out, count);
+    shi_models_soa(order, SHI_FAMILY_CLOSURE, channels, c, NULL, x, y, z, out, count);
 }
 
 SHI_INLINE void sh_closure_irradiance_batch(int order, int channels, const sh_closure *closure, const float *x, const float *y,
                                             const float *z, float *out, size_t count) {
-    shi_source source;
-    shi_source_init(order, SHI_FAMILY_CLOSURE, channels, NULL, closure, &source);
-    shi_models_soa(&source, x, y, z, out, count);
+    shi_models_soa(order, SHI_FAMILY_CLOSURE, channels, NULL, closure, x, y, z, out, count);
 }
 
 SHI_INLINE void sh_irradiance_geomerics_batch(int order, int channels, const float *c, const float *x, const float *y, const float *z,
                                               float *out, size_t count) {
-    shi_source source;
-    shi_source_init(order, SHI_FAMILY_GEOMERICS, channels, c, NULL, &source);
-    shi_models_soa(&source, x, y, z, out, count);
+    shi_models_soa(order, SHI_FAMILY_GEOMERICS, channels, c, NULL, x, y, z, out, count);
 }
 
 SHI_INLINE void sh_irradiance_zh3_batch(int order, int channels, const float *c, const float *x, const float *y, const float *z,
                                         float *out, size_t count) {
-    shi_source source;
-    shi_source_init(order, SHI_FAMILY_ZH3, channels, c, NULL, &source);
-    shi_models_soa(&source, x, y, z, out, count);
+    shi_models_soa(order, SHI_FAMILY_ZH3, channels, c, NULL, x, y, z, out, count);
 }
 
 SHI_INLINE void sh_irradiance_closure_batch_aos(int order, int channels, const float *c, const float *n, size_t n_stride, float *out,
                                                 size_t out_stride, size_t count) {
-    shi_source source;
-    shi_source_init(order, SHI_FAMILY_CLOSURE, channels, c, NULL, &source);
-    shi_models_aos(&source, n, n_stride, out, out_stride, count);
+    shi_models_aos(order, SHI_FAMILY_CLOSURE, channels, c, NULL, n, n_stride, out, out_stride, count);
 }
 
 SHI_INLINE void sh_closure_irradiance_batch_aos(int order, int channels, const sh_closure *closure, const float *n, size_t n_stride,
                                                 float *out, size_t out_stride, size_t count) {
-    shi_source source;
-    shi_source_init(order, SHI_FAMILY_CLOSURE, channels, NULL, closure, &source);
-    shi_models_aos(&source, n, n_stride, out, out_stride, count);
+    shi_models_aos(order, SHI_FAMILY_CLOSURE, channels, NULL, closure, n, n_stride, out, out_stride, count);
 }
 
 SHI_INLINE void sh_irradiance_geomerics_batch_aos(int order, int channels, const float *c, const float *n, size_t n_stride, float *out,
                                                   size_t out_stride, size_t count) {
-    shi_source source;
-    shi_source_init(order, SHI_FAMILY_GEOMERICS, channels, c, NULL, &source);
-    shi_models_aos(&source, n, n_stride, out, out_stride, count);
+    shi_models_aos(order, SHI_FAMILY_GEOMERICS, channels, c, NULL, n, n_stride, out, out_stride, count);
 }
 
 SHI_INLINE void sh_irradiance_zh3_batch_aos(int order, int channels, const float *c, const float *n, size_t n_stride, float *out,
                                             size_t out_stride, size_t count) {
-    shi_source source;
-    shi_source_init(order, SHI_FAMILY_ZH3, channels, c, NULL, &source);
-    shi_models_aos(&source, n, n_stride, out, out_stride, count);
+    shi_models_aos(order, SHI_FAMILY_ZH3, channels, c, NULL, n, n_stride, out, out_stride, count);
 }
 #endif /* SH_NO_BATCH */
 

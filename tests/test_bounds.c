@@ -124,8 +124,39 @@ static void test_cases(void) {
     }
 }
 
+static float as_half(float a) {
+    return shi_from_half(shi_to_half(a));
+}
+
+/* A sun whose coefficients were stored with six decimals, or as plain halves: no light has them, but for that rounding. */
+static void test_rounded_suns(void) {
+    for (int i = 0; i < 20000; i++) {
+        float d[3], n[3], c[9] = { 0 }, lo, hi;
+        const int halves = i % 2;
+        test_section("a sun as %s", halves ? "halves" : "decimals");
+        test_direction(d);
+        sh_add_sample(SH_L2, d, 1.0f, c);
+        for (int k = 0; k < 9; k++)
+            c[k] = halves ? as_half(c[k]) : roundf(1e6f * c[k]) / 1e6f;
+        test_direction(n);
+        const double cosine = (double)d[0] * (double)n[0] + (double)d[1] * (double)n[1] + (double)d[2] * (double)n[2];
+        const double truth = 4.0 * fmax(0.0, cosine), near = halves ? 0.15 : 5e-3; /* square roots of the rounding */
+        for (int order = SH_L1; order <= SH_L2; order++) {
+            const float *at[2] = { d, n };
+            for (int k = 0; k < 2; k++) {
+                const double expected = k ? truth : 4.0, closure = (double)sh_irradiance_closure(order, c, at[k]);
+                sh_irradiance_bounds(order, c, at[k], &lo, &hi);
+                NEAR(lo, expected, near);
+                CHECK((double)hi >= expected - near);
+                CHECK(closure >= (double)lo - 2e-6 && closure <= (double)hi + 2e-6);
+            }
+        }
+    }
+}
+
 static void run_tests(void) {
     const char *pairs = getenv("SH_TEST_PAIRS");
     test_pairs(pairs ? atol(pairs) : 1000000);
     test_cases();
+    test_rounded_suns();
 }
