@@ -313,6 +313,35 @@ static void decisions(void) {
     EQUAL(sh_equirect_size_for(SH_L2, nan), 1 << 24);
     EQUAL(sh_cubemap_size_for(SH_L1, nan), 1 << 24);
     EQUAL(sh_equirect_size_for(SH_L2, 0.0f), 1 << 24);
+    const float dim = 1e-9f;
+    for (int i = 0; i < 4; i++) {
+        float sphere[4] = { 0.0f, 0.0f, 10.0f, 1.0f }, c[9] = { 0 };
+        test_section("decisions, sphere with NaN at %d", i);
+        EQUAL(sh_add_spheres(SH_L2, 1, sphere, &dim, 1, 1e-3f, c), 0);
+        sphere[i] = nan;
+        EQUAL(sh_add_spheres(SH_L2, 1, sphere, &dim, 1, 1e-3f, c), 1);
+    }
+}
+
+/* One bad vertex, or one bad number of a quaternion, spoils everything: nothing finite is left that could be wrong. */
+static void all_nan(void) {
+    const float one = 1.0f;
+    for (int i = 0; i < 12; i++) {
+        float vertices[12] = { 0.5f, 0.0f, 1.0f, 0.0f, 0.5f, 1.0f, -0.5f, 0.0f, 1.0f, 0.0f, -0.5f, 1.0f }, c[9] = { 0 };
+        vertices[i] = (float)NAN;
+        test_section("polygon with NaN at %d", i);
+        EQUAL(sh_add_polygon(SH_L2, 1, vertices, 4, &one, c), SH_OK);
+        for (int k = 0; k < 9; k++)
+            CHECK(is_nan(c[k]));
+    }
+    for (int i = 0; i < 4; i++) {
+        float q[4] = { 0 }, m[9];
+        q[i] = (float)NAN;
+        test_section("quaternion with NaN at %d", i);
+        sh_rotation_from_quaternion(q, m);
+        for (int k = 0; k < 9; k++)
+            CHECK(is_nan(m[k]));
+    }
 }
 
 /* A channel that is NaN has no say in the window of the others. */
@@ -596,6 +625,7 @@ static void extreme_texels(void) {
 static void run_tests(void) {
     nan_in_nan_out();
     decisions();
+    all_nan();
     dering_of_one();
     one_item();
     infinite_arguments();

@@ -255,6 +255,22 @@ static void rows(void) {
     }
 }
 
+/* Rows of an order leave the sums above it as they were, at zero: accumulators are plain numbers, which others may add up. */
+static void sums_above_the_order(void) {
+    test_image of = test_image_create(32, 16, 3, SH_F32, test_tight);
+    test_image_fill(&of, 0.0, 1.0);
+    for (int order = SH_L0; order <= SH_L1; order++) {
+        sh_accum accum[3];
+        test_section("sums above order %d", order);
+        sh_accum_clear(3, accum);
+        EQUAL(sh_project_equirect_rows(order, &of.image, 0, 0, 16, accum, NULL), SH_OK);
+        for (int k = 0; k < 3; k++)
+            for (int i = SH_COUNT(order); i < 9; i++)
+                NEAR(accum[k].sum[i], 0, 0);
+    }
+    test_image_free(&of);
+}
+
 /* A light at +y: to the left of the centre from inside, to the right with SH_CLOCKWISE. */
 static void azimuth(void) {
     const float east[4] = { 0.0f, 4.0f, 0.0f, 0.0f };
@@ -297,4 +313,5 @@ static void run_tests(void) {
     band_limited();
     convergence();
     rows();
+    sums_above_the_order();
 }

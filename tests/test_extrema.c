@@ -453,6 +453,19 @@ static void test_grey_and_lights(void) {
     CHECK(sh_irradiance_max(SH_L2, skipped, NULL) <= 0.5f && sh_irradiance_min(SH_L2, skipped, NULL) >= -0.5f);
 }
 
+/* However small the lights and however many, they cost what they cost: a float budget would not feel a cost below half its ulp. */
+static void test_budget(void) {
+    static const float values[3] = { 6.9e-9f, 1.1e-8f, 3.3e-7f };
+    for (int i = 0; i < 3; i++) {
+        float budget = 1.0f;
+        double spent = 0.0;
+        test_section("a budget for lights of %g", (double)values[i]);
+        for (int k = 0; k < 20000000 && sh_skip_light(values[i], &budget); k++)
+            spent += 4.25 * (double)values[i];
+        CHECK(spent <= 1.0 - (double)budget && spent > 0.4);
+    }
+}
+
 static void run_tests(void) {
     for (uint32_t i = 0; i < DENSE; i++)
         sh_direction_fibonacci(i, DENSE, dense[i]);
@@ -463,6 +476,7 @@ static void run_tests(void) {
     test_realizable();
     test_dering(inputs ? atoi(inputs) : 3000);
     test_order_needed();
+    test_budget();
     test_tight_bounds();
     test_tilted();
     test_black();

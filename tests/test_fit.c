@@ -128,6 +128,42 @@ static void undetermined(void) {
     EQUAL(sh_fit_samples(SH_L1, 1, x, y, z, value, NULL, 50, kernel, 0.0f, out), SH_OK);
 }
 
+/* Samples in a cone, which is narrowed until they do not determine the light: the warning comes with the least mean square, about any
+ * axis, and before it what is given back is the light. */
+static void cones(void) {
+    static const float axes[3][3] = { { 0, 0, 1 }, { 0.6f, 0, 0.8f }, { 0.36f, 0.48f, -0.8f } };
+    double last[3] = { 0.0, 0.0, 0.0 };
+    for (int a = 0; a < 3; a++)
+        for (double angle = 1.2; angle > 0.2; angle *= 0.98) {
+            float c[9], out[9];
+            long double axis[3], u[3], v[3];
+            double most = 0.0;
+            test_section("a cone of half-angle %g, axis %d", angle, a);
+            test_fill(c, 9, -1.0, 1.0);
+            oracle_widen(axes[a], 3, axis);
+            oracle_frame(axis, u, v);
+            for (int i = 0; i < 150; i++) {
+                const double t = 1.0 - (1.0 - cos(angle)) * (i + 0.5) / 150.0, s = sqrt(1.0 - t * t), turn = 2.39996322972865332 * i;
+                float dir[3];
+                for (int k = 0; k < 3; k++)
+                    dir[k] = (float)((long double)t * axis[k] + (long double)s * (cosl((long double)turn) * u[k] + sinl((long double)turn) * v[k]));
+                x[i] = dir[0];
+                y[i] = dir[1];
+                z[i] = dir[2];
+                value[i] = sh_radiance(SH_L2, c, dir);
+            }
+            if (sh_fit_samples(SH_L2, 1, x, y, z, value, NULL, 150, NULL, 0.0f, out) != SH_OK)
+                break;
+            last[a] = angle;
+            for (int k = 0; k < 9; k++)
+                most = fmax(most, fabs((double)out[k] - (double)c[k]));
+            CHECK(most < 1e-4);
+        }
+    NEAR(last[1], last[0], 0.02 * last[0]);
+    NEAR(last[2], last[0], 0.02 * last[0]);
+    CHECK(last[0] > 0.5 && last[0] < 0.6);
+}
+
 static void errors(void) {
     float c[9], before[9], none[MOST] = { 0 }, indefinite[MOST] = { -5.0f, 2.0f, 2.0f, 2.0f, 2.0f };
     test_section("errors write nothing");
@@ -151,5 +187,6 @@ static void run_tests(void) {
     recovery();
     minimum();
     undetermined();
+    cones();
     errors();
 }

@@ -186,6 +186,17 @@ static void disks(void) {
         sh_add_disk(SH_L2, 1, center, normal, radius, &one, c);
         compare(c, expected, 3e-6L);
     }
+    /* Seen nearly edge-on, R0 vanishes with the height. */
+    static const double offs[] = { 1.04, 1.1, 1.5, 3.0 }, heights[] = { 1e-6, 1e-5, 1e-4, 0.01 };
+    for (int i = 0; i < 16; i++) {
+        const float center[3] = { (float)-offs[i / 4], 0.0f, (float)heights[i % 4] }, normal[3] = { 0, 0, 1 };
+        float c[9] = { 0 };
+        long double expected[9];
+        test_section("disk at %g radii, from a height of %g", offs[i / 4], heights[i % 4]);
+        oracle_disk(center, normal, 1.0f, 128, 512, expected);
+        sh_add_disk(SH_L2, 1, center, normal, 1.0f, &one, c);
+        compare(c, expected, 1e-6L);
+    }
     /* Facing, it is the cap of tan = radius / distance, at any size. */
     static const double ratios[] = { 1e-9, 2e-8, 1e-5, 0.01, 1.0, 50.0, 1e5 };
     for (int i = 0; i < 7; i++) {

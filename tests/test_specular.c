@@ -43,6 +43,13 @@ static void kernels(void) {
         sh_zonal_cosine_power((float)exponents[i], zonal);
         against_quadrature(zonal, cosine_power, &s);
     }
+    for (int i = 0; i < 12; i++) {
+        const float exponent = (float)pow(10.0, i - 8);
+        test_section("cosine power %g, relative", (double)exponent);
+        sh_zonal_cosine_power(exponent, zonal);
+        RELATIVE(zonal[1], (1.0L + (long double)exponent) / (2.0L + (long double)exponent), 2e-7);
+        RELATIVE(zonal[2], (long double)exponent / (3.0L + (long double)exponent), 2e-7);
+    }
     for (int i = 0; i < 11; i++) {
         const parameter a = { (long double)(float)alphas[i] };
         test_section("GGX, alpha %g", alphas[i]);

@@ -87,6 +87,10 @@ static void shader(void) {
             NEAR(e, sh_irradiance(SH_L2, c + 9 * k, n), 3e-6);
         }
         NEAR(s[27], 1, 0);
+        float in_place[28] = { 0 };
+        memcpy(in_place, c, sizeof c);
+        sh_pack_shader(in_place, in_place);
+        SAME_BITS(in_place, s, sizeof s);
     }
 }
 
@@ -130,6 +134,16 @@ static void halves(void) {
     sh_pack_half(SH_L2, 1, black, half);
     sh_unpack_half(SH_L2, 1, half, decoded);
     NEAR_ALL(decoded, black, 9, 0);
+    /* Exponents that packing does not make: too small or too large, and of the number's own sign. */
+    test_section("halves with any exponent");
+    static const uint16_t exponents[6] = { 0x7fff, 0x7000, 0x0400, 0xfc00, 0x8800, 0x8000 };
+    for (int i = 0; i < 6; i++) {
+        uint16_t hostile[10] = { 0x3c00, 0xbc00 };
+        hostile[9] = exponents[i];
+        sh_unpack_half(SH_L2, 1, hostile, decoded);
+        CHECK(i < 3 ? isinf(decoded[0]) && isinf(decoded[1]) : decoded[0] == 0.0f && decoded[1] == 0.0f);
+        CHECK(decoded[0] >= 0.0f && decoded[1] <= 0.0f);
+    }
 }
 
 /* Each finite half decodes to its value, and back to itself. */

@@ -1,4 +1,4 @@
-// Device code of every function of sh.h that takes a single direction or one set of coefficients. Compiled by CI where there is an nvcc.
+// Device code of the functions of sh.h, and host code in the same file. Compiled by CI where there is an nvcc.
 #include "sh.h"
 
 // out += what the functions give, so that the compiler leaves none of them out.
@@ -56,4 +56,33 @@ __global__ void storage(const float *c, float *shader, uint16_t *half, uint8_t *
 __global__ void sampling(uint32_t seed, float *dir, sh_accum *accum) {
     sh_direction_sequence(threadIdx.x, seed, dir);
     sh_accum_sample(SH_L2, dir, 1.0f, 1.0f, accum);
+}
+
+// Batches and images, which a .cu file may call on the host, or one thread for a whole image.
+__host__ __device__ void arrays(const float *c, const float *x, const float *y, const float *z, const float *m, const sh_image *image,
+                                float *out) {
+    sh_radiance_batch(SH_L2, 3, c, x, y, z, out, 100);
+    sh_irradiance_batch(SH_L2, 3, c, x, y, z, out, 100);
+    sh_radiance_batch_aos(SH_L2, 3, c, x, 0, out, 0, 100);
+    sh_irradiance_batch_aos(SH_L2, 3, c, x, 0, out, 0, 100);
+    sh_irradiance_closure_batch(SH_L2, 3, c, x, y, z, out, 100);
+    sh_irradiance_geomerics_batch(SH_L2, 3, c, x, y, z, out, 100);
+    sh_irradiance_zh3_batch(SH_L2, 3, c, x, y, z, out, 100);
+    sh_irradiance_probes_batch(SH_L2, 3, c, x, y, z, out, 100);
+    sh_rotate_batch(SH_L2, c, m, out, 100);
+    sh_product_batch(SH_L2, c, x, out, 100);
+    sh_project_samples(SH_L2, 1, x, y, z, x, NULL, 100, out);
+    sh_project_equirect(SH_L2, image, 0, out, NULL);
+    sh_project_cubemap(SH_L2, image, 0, out, NULL);
+    sh_project_octahedral(SH_L2, image, 0, out, NULL);
+    sh_fit_samples(SH_L2, 1, x, y, z, x, NULL, 100, NULL, 0.0f, out);
+}
+
+__global__ void one_thread(const float *c, const float *x, const float *y, const float *z, const float *m, const sh_image *image,
+                           float *out) {
+    arrays(c, x, y, z, m, image, out);
+}
+
+void on_the_host(const float *c, const float *x, const float *y, const float *z, const float *m, const sh_image *image, float *out) {
+    arrays(c, x, y, z, m, image, out);
 }
