@@ -417,9 +417,9 @@ static inline double operator_pack_error(bench_case *test, int of_baseline) {
         long double expected[OP_RGB];
         float c[OP_RGB];
         oracle_widen(d->in + OP_RGB * i, OP_RGB, expected);
-        sh_pack_half(SH_L2, 3, d->in + OP_RGB * i, d->half);
-        sh_unpack_half(SH_L2, 3, d->half, c);
-        if (test->kind == OP_UNORM8)
+        if (test->kind == OP_HALF)
+            sh_unpack_half(SH_L2, 3, d->half + 28 * i, c);
+        else
             sh_unpack_unorm8(SH_L2, 3, d->r0 + 3 * i, d->code + 24 * i, c);
         for (int k = 0; k < 3; k++)
             worst = bench_worse(worst, operator_difference(c + 9 * k, expected + 9 * k, 9, expected[9 * k]));

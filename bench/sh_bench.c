@@ -5,10 +5,7 @@
 #define _POSIX_C_SOURCE 200112L /* NOLINT(bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp): the name is POSIX's */
 #endif
 
-#include <errno.h>
-#if !defined(_WIN32)
-#include <sys/stat.h>
-#endif
+#include "../examples/output_file.h"
 
 #include "bench_bounds.h"
 #include "bench_closure.h"
@@ -100,68 +97,32 @@ static bench_list matching_cases(const char *filter) {
     return all;
 }
 
-/* ---- Output files: complete, or not there ------------------------------------------------------------------------------------ */
+/* ---- Output files ------------------------------------------------------------------------------------------------------------ */
 
-/* Whether `path` is something that a file must not replace: a link, such as /dev/stdout, a pipe, a device. */
-static int is_special(const char *path) {
-#if defined(_WIN32)
-    (void)path;
-    return 0;
-#else
-    struct stat status;
-    return lstat(path, &status) == 0 && !S_ISREG(status.st_mode);
-#endif
-}
-
-/* Where the file is written before it gets its name. Free the result. */
-static char *temporary_name(const char *path) {
-    const size_t size = strlen(path) + sizeof ".tmp";
-    char *name = (char *)bench_check(malloc(size));
-    snprintf(name, size, "%s%s", path, is_special(path) ? "" : ".tmp");
-    return name;
+static int cannot_write(const char *path, int error) {
+    return error ? complain(strerror(error), path) : 0;
 }
 
 /* Whether a file can be written there: better known before minutes of measuring than after. */
 static int check_output(const char *path) {
-    if (!path)
-        return 0;
-    char *temporary = temporary_name(path);
-    FILE *file = fopen(temporary, "wb");
-    const int status = file ? 0 : complain(strerror(errno), path);
-    if (file) {
-        fclose(file);
-        if (strcmp(temporary, path) != 0)
-            remove(temporary);
-    }
-    free(temporary);
-    return status;
+    output_file out;
+    const int error = path ? output_open(path, &out) : 0;
+    if (path && !error)
+        output_close(&out, 0);
+    return cannot_write(path, error);
 }
 
 typedef void (*bench_writer)(FILE *file, const bench_machine *machine, const bench_result *results, int count);
 
 static int write_output(const char *path, bench_writer writer, const bench_machine *machine, const bench_result *results,
                         int count) {
-    if (!path)
-        return 0;
-    char *temporary = temporary_name(path);
-    FILE *file = fopen(temporary, "wb");
-    int written = file != NULL;
-    if (file) {
-        writer(file, machine, results, count);
-        written = !ferror(file);
-        written &= fclose(file) == 0;
+    output_file out;
+    int error = path ? output_open(path, &out) : 0;
+    if (path && !error) {
+        writer(out.file, machine, results, count);
+        error = output_close(&out, 1);
     }
-    if (strcmp(temporary, path) != 0) {
-#if defined(_WIN32)
-        if (written)
-            remove(path); /* rename does not replace a file there */
-#endif
-        written = written && rename(temporary, path) == 0;
-        if (!written)
-            remove(temporary);
-    }
-    free(temporary);
-    return written ? 0 : complain("cannot write", path);
+    return cannot_write(path, error);
 }
 
 /* ---- Main -------------------------------------------------------------------------------------------------------------------- */
@@ -202,22 +163,19 @@ static int measure_and_report(const bench_list *list, const bench_options *optio
     return status;
 }
 
-/* The models or the bounds. */
-static int draw(const bench_options *options) {
-    const char *path = options->models ? options->models : options->bounds;
-    FILE *file = fopen(path, "wb");
-    int unread = 0;
-    if (!file)
-        return complain("cannot write", path);
-    if (options->models)
-        unread = bench_models(file, options->env, options->env_count);
+/* The chart of models, with panoramas from `env`; or without models, that of bounds. */
+static int draw(const char *path, int models, const char *const *env, int env_count) {
+    output_file out;
+    int unread = 0, error = output_open(path, &out);
+    if (error)
+        return cannot_write(path, error);
+    if (models)
+        unread = bench_models(out.file, env, env_count);
     else
-        bench_bounds(file);
-    const int failed = ferror(file);
-    if (fclose(file) != 0 || failed)
-        return complain("cannot write", path);
+        bench_bounds(out.file);
+    error = output_close(&out, !unread);
     /* NOLINTNEXTLINE(clang-analyzer-core.NullDereference): a panorama that cannot be read is one of the list */
-    return unread ? complain("cannot read panorama", options->env[unread - 1]) : 0;
+    return unread ? complain("cannot read panorama", env[unread - 1]) : cannot_write(path, error);
 }
 
 int main(int argc, char **argv) {
@@ -228,8 +186,10 @@ int main(int argc, char **argv) {
         fputs(usage, stdout);
         return 0;
     }
-    if (options.models || options.bounds)
-        return draw(&options);
+    if (options.models || options.bounds) {
+        const int failed = options.models ? draw(options.models, 1, options.env, options.env_count) : 0;
+        return options.bounds && draw(options.bounds, 0, NULL, 0) ? 2 : failed;
+    }
     bench_list list = matching_cases(options.filter);
     int status = 0;
     if (list.count == 0)

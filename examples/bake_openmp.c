@@ -6,7 +6,7 @@
 
 enum { PROBES = 64, SAMPLES = 4096, PARTS = 16, SIZE = 3 * SH_COUNT(SH_L2) };
 
-/* What a ray tracer would return: a sky with a soft sun, over grass, and a red wall at x = 1 that is 2 high. */
+/* What a ray tracer would return: a sky with a wide sun, over grass, and a red wall at x = 1 that is 2 high. */
 static void trace(const float from[3], const float dir[3], float rgb[3]) {
     const float distance = dir[0] > 0.0f ? (1.0f - from[0]) / dir[0] : 1e9f, height = from[2] + distance * dir[2];
     const int wall = dir[0] > 0.0f && height > 0.0f && height < 2.0f;
@@ -57,10 +57,10 @@ int main(void) {
         difference = fmaxf(difference, fabsf(split[i] - probes[0][i]));
 
     const float wall[3] = { 1, 0, 0 };
-    const float far_red = sh_irradiance(SH_L1, probes[0], wall), near_blue = sh_irradiance(SH_L2, probes[PROBES - 1] + 18, wall);
-    const float far_blue = sh_irradiance(SH_L2, probes[0] + 18, wall);
+    const int blue = 2 * SH_COUNT(SH_L2);
+    const float far_blue = sh_irradiance(SH_L2, probes[0] + blue, wall), near_blue = sh_irradiance(SH_L2, probes[PROBES - 1] + blue, wall);
     printf("%d probes of %d rays; blue light on a surface that faces the wall: %.3f far from it, %.3f near it\n", PROBES, SAMPLES,
            (double)far_blue, (double)near_blue);
     printf("a probe in %d parts differs by %.1e\n", PARTS, (double)difference);
-    return difference < 1e-6f && near_blue < far_blue && far_red > 0.0f ? 0 : 1;
+    return difference < 1e-6f && near_blue < far_blue ? 0 : 1;
 }

@@ -1,7 +1,6 @@
 /* A grid of probes of mixed orders. Each is stored at the lowest order that its irradiance needs under a tolerance; looking up a point
  * interpolates the eight probes around it, each by its own order, which is within the tolerance of interpolating full ones. */
 #include <stdio.h>
-#include <stdlib.h>
 
 #include "sh.h"
 

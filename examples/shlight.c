@@ -3,14 +3,20 @@
  *     shlight [PANORAMA.hdr|.pfm] [-o OUT.png] [--order N] [--models A,B] [--bounds] [--no-picture] [--quiet] [--help]
  *
  * Here: the models; the report; the command line. In the headers beside this file: shlight_scene.h projects and measures,
- * shlight_reference.h is the brute force, shlight_picture.h and shlight_bounds.h draw, shlight_image.h reads files, shlight_sky.h is the built-in sky.
+ * shlight_reference.h is the brute force, shlight_picture.h and shlight_bounds.h draw, shlight_image.h reads files, output_file.h
+ * writes them, shlight_sky.h is the built-in sky.
  */
+#if !defined(_WIN32)
+#define _POSIX_C_SOURCE 200112L /* NOLINT(bugprone-reserved-identifier,cert-dcl37-c,cert-dcl51-cpp): the name is POSIX's */
+#endif
+
 #include <errno.h>
 #include <stdarg.h>
 #include <stdio.h>
 
 #include "sh.h"
 
+#include "output_file.h"
 #include "shlight_image.h"
 #include "shlight_picture.h"
 #include "shlight_png.h"
@@ -224,7 +230,7 @@ static const char usage[] =
     "  --bounds     also the bounds that 4 and 9 coefficients prove for the irradiance: their width in the report, and in\n"
     "               the picture a plot of them around the light, with the truth, the linear model and the closure\n"
     "  --no-picture only the report\n"
-    "  --quiet      no progress on stderr (there is none either where stderr is not a terminal)\n"
+    "  --quiet      no progress on stderr (also none where stderr is not a terminal)\n"
     "  --help       this text\n"
     "\n"
     "exit status: 0 done; 1 the picture or the report could not be made or written; 2 bad arguments or panorama\n";
@@ -334,6 +340,15 @@ static unsigned char *read_file(const char *path, size_t *size, const char **err
     return NULL;
 }
 
+static int unknown_model(const options *o) {
+    char names[256] = "";
+    for (int i = 0; i < MODELS && models[i].order <= o->order; i++) {
+        const size_t length = strlen(names);
+        snprintf(names + length, sizeof names - length, "%s%s", i ? ", " : "", models[i].name);
+    }
+    return fail(o, STATUS_BAD_INPUT, "--models %s: the models of order %d are %s", o->models, o->order, names);
+}
+
 static int load(const options *o, scene *s) {
     const char *error = NULL;
     s->name = o->panorama ? o->panorama : "built-in sky";
@@ -341,8 +356,7 @@ static int load(const options *o, scene *s) {
     s->show_bounds = o->bounds;
     s->model_count = choose_models(o->models, o->order, s->models);
     if (s->model_count < 0)
-        return fail(o, STATUS_BAD_INPUT, "--models %s: not models of order %d or less, in the words of the report", o->models,
-                    o->order);
+        return unknown_model(o);
     if (o->panorama) {
         size_t size;
         unsigned char *bytes = read_file(o->panorama, &size, &error);
@@ -360,7 +374,12 @@ static int load(const options *o, scene *s) {
 static int save(const options *o, const scene *s) {
     size_t size = 0;
     unsigned char *png = draw_picture(s, &size);
-    const int error = png ? shlight_write_file(o->output, png, size) : ENOMEM;
+    output_file out;
+    int error = png ? output_open(o->output, &out) : ENOMEM;
+    if (!error) {
+        fwrite(png, 1, size, out.file);
+        error = output_close(&out, 1);
+    }
     free(png);
     return error ? fail(o, STATUS_FAILED, "%s: cannot write the picture: %s", o->output, strerror(error)) : STATUS_OK;
 }
@@ -389,7 +408,7 @@ int main(int argc, char **argv) {
     scene s = { 0 };
     int status = parse_options(argc, argv, &o);
     if (status == STATUS_OK && o.help)
-        fputs(usage, stdout);
+        status = fputs(usage, stdout) >= 0 && fflush(stdout) == 0 ? STATUS_OK : fail(&o, STATUS_FAILED, "the help could not be written");
     else if (status == STATUS_OK)
         status = run(&o, &s);
     scene_free(&s);

@@ -1,11 +1,8 @@
-/* shlight_png.h - writes 8-bit sRGB pictures as PNG (ISO/IEC 15948), compressed as one deflate block with fixed codes (RFC 1951).
- * The file appears complete or not at all: it is written under another name, then renamed. */
+/* shlight_png.h - makes 8-bit sRGB pictures into PNG (ISO/IEC 15948), compressed as one deflate block with fixed codes (RFC 1951). */
 #ifndef SHLIGHT_PNG_H
 #define SHLIGHT_PNG_H
 
-#include <errno.h>
 #include <stdint.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -196,52 +193,6 @@ static unsigned char *shlight_png(const unsigned char *rgb, int width, int heigh
     free(history);
     free(filtered);
     return png;
-}
-
-/* ---- The file ------------------------------------------------------------------------------------------------------------------- */
-
-/* Renames over an existing file; where rename does not do that, as on Windows, the old one goes first. */
-static int shlight_replace(const char *from, const char *to) {
-#if defined(_WIN32)
-    if (rename(from, to) == 0)
-        return 0;
-    remove(to);
-#endif
-    return rename(from, to);
-}
-
-/* Writes the bytes to path by way of path.part. 0, or errno. */
-static int shlight_write_file(const char *path, const unsigned char *bytes, size_t size) {
-    static const char suffix[] = ".part";
-    const size_t length = strlen(path);
-    char *part = (char *)malloc(length + sizeof suffix);
-    int error = 0;
-    if (!part)
-        return ENOMEM;
-    memcpy(part, path, length);
-    memcpy(part + length, suffix, sizeof suffix);
-    errno = 0;
-    FILE *file = fopen(part, "wb");
-    if (file) {
-        int failed = fwrite(bytes, 1, size, file) != size;
-        error = failed ? errno : 0;
-        if (fclose(file) != 0 && !failed) {
-            failed = 1;
-            error = errno;
-        }
-        if (!failed && shlight_replace(part, path) != 0) {
-            failed = 1;
-            error = errno;
-        }
-        if (failed) {
-            remove(part);
-            error = error ? error : EIO;
-        }
-    } else {
-        error = errno ? errno : EIO;
-    }
-    free(part);
-    return error;
 }
 
 #endif /* SHLIGHT_PNG_H */

@@ -1,4 +1,4 @@
-/* Relights a vertex buffer: irradiance at every normal of an interleaved mesh, in one call per frame; and, for a mesh that shadows
+/* Relights a vertex buffer: the colours of an interleaved mesh from its normals, in one call per frame; and, for a mesh that shadows
  * itself, radiance transfer: one dot product per vertex and channel with a vector that was baked once. */
 #include <stdio.h>
 
@@ -41,13 +41,12 @@ int main(void) {
         float light[3 * SH_COUNT(SH_L2)] = { 0 };
         sh_add_hemisphere(SH_L2, 3, up, sky, ground, light);
         sh_add_cap(SH_L2, 3, sun, 0.00465f, SH_IRRADIANCE, sunlight, light);
+        sh_irradiance_batch_aos(SH_L2, 3, light, mesh[0].normal, sizeof(vertex), mesh[0].color, sizeof(vertex), VERTICES);
         open_total = shadowed_total = 0.0;
         for (int i = 0; i < VERTICES; i++)
             for (int k = 0; k < 3; k++) {
-                const float *c = light + k * SH_COUNT(SH_L2);
-                mesh[i].color[k] = sh_irradiance(SH_L2, c, mesh[i].normal);
                 open_total += (double)mesh[i].color[k] / VERTICES;
-                shadowed_total += (double)sh_dot(SH_L2, c, transfer[i]) / VERTICES;
+                shadowed_total += (double)sh_dot(SH_L2, light + k * SH_COUNT(SH_L2), transfer[i]) / VERTICES;
             }
         printf("sun at %2.0f degrees: mean irradiance / pi %.3f, with the floor's shadow %.3f\n", (double)angle * 57.29578, open_total,
                shadowed_total);

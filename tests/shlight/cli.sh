@@ -306,9 +306,9 @@ check 'no argument: --order' refused 2 '--order needs' --order
 check 'order 3' refused 2 '--order 3' --order 3
 check 'order -1' refused 2 '--order -1' --order -1
 check 'no argument: --models' refused 2 '--models needs' --models
-check 'a model that there is not' refused 2 'not models of order 2' --models 'L1 closure,L3 closure'
-check 'an empty name of a model' refused 2 'not models of order 2' --models 'L1 closure,'
-check 'a model above the order' refused 2 'not models of order 1' --order 1 --models 'L2 closure'
+check 'a model that there is not' refused 2 'the models of order 2 are' --models 'L1 closure,L3 closure'
+check 'an empty name of a model' refused 2 'the models of order 2 are' --models 'L1 closure,'
+check 'a model above the order' refused 2 'the models of order 1 are' --order 1 --models 'L2 closure'
 check 'bounds at order 0' refused 2 '--bounds needs order 1 or 2' --order 0 --bounds
 check 'order 1x' refused 2 '--order 1x' --order 1x
 check 'two panoramas' refused 2 'one panorama' a.hdr b.hdr
@@ -401,6 +401,17 @@ full() {
 }
 check 'no room for the picture: the old one stays, nothing left behind' full
 
+links_and_pipes() {
+    echo old >target.png
+    ln -s target.png link.png
+    mkfifo pipe.png
+    cat pipe.png >piped.png &
+    run --models none base.pfm -o link.png && run --models none base.pfm -o pipe.png
+    wait
+    [ "$status" = 0 ] && [ -L link.png ] && [ -p pipe.png ] && [ -s piped.png ] && cmp target.png piped.png && [ ! -e pipe.png.part ]
+}
+check 'a link and a pipe are written to, not replaced' links_and_pipes
+
 full_report() {
     status=0
     "$shlight" --models none base.pfm -o picture.png >/dev/full 2>err.txt || status=$?
@@ -414,7 +425,8 @@ real_panorama() { # real_panorama FILE: L2 is better than L1, L1 better than L0
     report "$1"
     no_nan && awk '/^L0 /{ a = $3 } /^L1 linear/{ b = $4 } /^L2 linear/{ c = $4 } END { exit !(a > b && b > c && c > 0 && c < 0.1) }' out.txt
 }
-for file in "$here"/../../../shared/envs/studio.pfm "$here"/../../../shared/envs/sunset.pfm; do
+envs=${SH_ENVS_DIR:-$here/../../../shared/envs}
+for file in "$envs/studio.pfm" "$envs/sunset.pfm"; do
     [ -r "$file" ] && check "$(basename "$file")" real_panorama "$file"
 done
 
