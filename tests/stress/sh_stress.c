@@ -65,7 +65,7 @@ static int stress_parse(int argc, char **argv, stress_options *options) {
 static int stress_errors(const stress_options *options) {
     const int count = options->count ? options->count : options->quick ? 300 : 20000;
     int bad = 0;
-    printf("Backend: %s. Inputs of each class, and steps of each climb: %d by the cost of a case.\n\n", SH_SIMD_NAME, count);
+    printf("Backend: %s. Inputs of each class, and steps of each climb: %d, fewer for costly functions.\n\n", SH_SIMD_NAME, count);
     for (size_t g = 0; g < sizeof stress_groups / sizeof stress_groups[0]; g++) {
         printf("### %s\n\n| function | bound | uniform input | worst | class of the worst |\n|---|---|---|---|---|\n",
                stress_groups[g].title);

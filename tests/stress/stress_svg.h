@@ -45,7 +45,7 @@ static inline void svg_axes(FILE *file, int first, int last) {
     fprintf(file, "<text x=\"%d\" y=\"%d\" text-anchor=\"middle\">number of samples</text>\n", SVG_WIDTH / 2, SVG_HEIGHT - 12);
     fprintf(
         file,
-        "<text transform=\"translate(22 %d) rotate(-90)\" text-anchor=\"middle\">largest error of a coefficient, by R0</text>\n",
+        "<text transform=\"translate(22 %d) rotate(-90)\" text-anchor=\"middle\">largest error of a coefficient, relative to R0</text>\n",
         SVG_HEIGHT / 2);
 }
 
