@@ -388,6 +388,17 @@ a_folder() {
 }
 check 'the name of a folder: exit status 1, nothing left behind' a_folder
 
+links_and_pipes() {
+    echo old >target.png
+    ln -s target.png link.png
+    mkfifo pipe.png
+    cat pipe.png >piped.png &
+    run --models none base.pfm -o link.png && run --models none base.pfm -o pipe.png
+    wait
+    [ "$status" = 0 ] && [ -L link.png ] && [ -p pipe.png ] && [ -s piped.png ] && cmp target.png piped.png && [ ! -e pipe.png.part ]
+}
+check 'a link and a pipe are written to, not replaced' links_and_pipes
+
 full() {
     rm -f shlight.png
     echo keep >full.png
@@ -400,17 +411,6 @@ full() {
     ) && [ "$(cat full.png)" = keep ] && [ ! -e full.png.part ]
 }
 check 'no room for the picture: the old one stays, nothing left behind' full
-
-links_and_pipes() {
-    echo old >target.png
-    ln -s target.png link.png
-    mkfifo pipe.png
-    cat pipe.png >piped.png &
-    run --models none base.pfm -o link.png && run --models none base.pfm -o pipe.png
-    wait
-    [ "$status" = 0 ] && [ -L link.png ] && [ -p pipe.png ] && [ -s piped.png ] && cmp target.png piped.png && [ ! -e pipe.png.part ]
-}
-check 'a link and a pipe are written to, not replaced' links_and_pipes
 
 full_report() {
     status=0
