@@ -85,7 +85,7 @@ static inline void bounds_moments(const bounds_light *light, float c[9]) {
     }
 }
 
-enum { BOUNDS_TRUTH, BOUNDS_LINEAR, BOUNDS_CLOSURE, BOUNDS_LOW1, BOUNDS_HIGH1, BOUNDS_LOW2, BOUNDS_HIGH2, BOUNDS_CURVES };
+enum { BOUNDS_TRUTH, BOUNDS_LINEAR, BOUNDS_CLOSURE1, BOUNDS_CLOSURE2, BOUNDS_LOW1, BOUNDS_HIGH1, BOUNDS_LOW2, BOUNDS_HIGH2, BOUNDS_CURVES };
 
 typedef double bounds_curve[BOUNDS_STEPS + 1];
 
@@ -100,7 +100,8 @@ static inline void bounds_evaluate(const bounds_light *light, bounds_curve curve
             sh_irradiance_bounds(order, c, n, lo + order - 1, hi + order - 1);
         curve[BOUNDS_TRUTH][i] = bounds_truth(light, n);
         curve[BOUNDS_LINEAR][i] = (double)sh_irradiance(SH_L2, c, n);
-        curve[BOUNDS_CLOSURE][i] = (double)sh_irradiance_closure(SH_L2, c, n);
+        curve[BOUNDS_CLOSURE1][i] = (double)sh_irradiance_closure(SH_L1, c, n);
+        curve[BOUNDS_CLOSURE2][i] = (double)sh_irradiance_closure(SH_L2, c, n);
         curve[BOUNDS_LOW1][i] = (double)lo[0];
         curve[BOUNDS_HIGH1][i] = (double)hi[0];
         curve[BOUNDS_LOW2][i] = (double)lo[1];
@@ -136,7 +137,8 @@ static inline void bounds_line(FILE *file, const bounds_curve curve, const char 
 }
 
 static const char *const bounds_colour[2] = { "#e8eaee", "#bcc3cf" };
-static const char *const bounds_style[3] = { "stroke=\"#111111\" stroke-width=\"1.6\"", "stroke=\"#2563eb\" stroke-width=\"1.4\"",
+static const char *const bounds_style[4] = { "stroke=\"#111111\" stroke-width=\"1.6\"", "stroke=\"#2563eb\" stroke-width=\"1.4\"",
+                                             "stroke=\"#15803d\" stroke-width=\"1.3\" stroke-dasharray=\"2 2\"",
                                              "stroke=\"#ea6a0a\" stroke-width=\"1.8\" stroke-dasharray=\"5 2\"" };
 
 static inline void bounds_panel(FILE *file, int which) {
@@ -165,7 +167,8 @@ static inline void bounds_panel(FILE *file, int which) {
                  angle[i]);
     bounds_line(file, curve[BOUNDS_LINEAR], bounds_style[1]);
     bounds_line(file, curve[BOUNDS_TRUTH], bounds_style[0]);
-    bounds_line(file, curve[BOUNDS_CLOSURE], bounds_style[2]);
+    bounds_line(file, curve[BOUNDS_CLOSURE1], bounds_style[2]);
+    bounds_line(file, curve[BOUNDS_CLOSURE2], bounds_style[3]);
     fputs("</g>\n", file);
 }
 
@@ -191,7 +194,8 @@ static inline void bench_bounds(FILE *file) {
     bounds_key(file, BOUNDS_LEFT + 160, bounds_colour[0], "", "L1 bounds");
     bounds_key(file, BOUNDS_LEFT + 285, bounds_colour[1], "", "L2 bounds");
     bounds_key(file, BOUNDS_LEFT + 410, NULL, bounds_style[1], "L2 linear");
-    bounds_key(file, BOUNDS_LEFT + 525, NULL, bounds_style[2], "L2 closure");
+    bounds_key(file, BOUNDS_LEFT + 525, NULL, bounds_style[2], "L1 closure");
+    bounds_key(file, BOUNDS_LEFT + 645, NULL, bounds_style[3], "L2 closure");
     for (int i = 0; i < BOUNDS_PANELS; i++)
         bounds_panel(file, i);
     svg_text(file, BOUNDS_LEFT + 0.5 * (width - BOUNDS_LEFT), height - 10,
