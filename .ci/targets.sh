@@ -81,7 +81,7 @@ compiler() {
 add_row() {
     local backend label=${3%% *}
     label=${label/#env/natively}
-    backend=$(sed -n 's/^backend \(.*\) lanes [0-9]*$/\1/p' "$4/vocabulary.out")
+    backend=$(sed -n '/^backend .* lanes [0-9]*$/{s/^backend \(.*\) lanes .*/\1/p;q}' "$4/vocabulary.out")
     echo "| $1 | $2 | ${label} | $backend | $(echo "$kernel_tests" | wc -w) |" >>"$work/targets.md"
 }
 
