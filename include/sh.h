@@ -86,9 +86,10 @@
 #endif
 #define SHI_FUNCTION SH_DEVICE static inline
 
-/* Four floats that compilers keep in one register where the target has such, without any header: vectors of GCC's language. */
+/* Two and four floats that compilers keep in one register where the target has such, without any header: vectors of GCC's language. */
 #if defined(__GNUC__) && !defined(__TINYC__) && !defined(__CUDACC__)
 #define SHI_HAS_FOUR 1
+typedef float shi_two __attribute__((vector_size(8)));
 typedef float shi_four __attribute__((vector_size(16)));
 #else
 #define SHI_HAS_FOUR 0
@@ -661,21 +662,65 @@ SHI_INLINE void sh_lerp(int order, const float *a, const float *b, float t, floa
         out[i] = (1.0f - t) * a[i] + t * b[i];
 }
 
-SHI_INLINE void sh_add_sample(int order, const float dir[3], float value, float *c) {
 #if SHI_HAS_FOUR
-    /* One vector of an L1 set is stored and loaded again by the next sample fast; those of an L2 set would cross cache lines. */
-    if (order == SH_L1) {
-        const shi_four v = { value, value, value, value }, basis = { 1.0f, dir[0], dir[1], dir[2] };
-        shi_four sum;
-        memcpy(&sum, c, sizeof sum);
-        sum = v * basis + sum;
-        memcpy(c, &sum, sizeof sum);
-        return;
+SHI_INLINE void shi_madd_two(const float *a, float scale, float *c) {
+    const shi_two vector = { a[0], a[1] }, factor = { scale, scale };
+    shi_two sum;
+    memcpy(&sum, c, sizeof sum);
+    sum = factor * vector + sum;
+    memcpy(c, &sum, sizeof sum);
+}
+
+SHI_INLINE void shi_madd_four(const float *a, float scale, float *c) {
+    const shi_four vector = { a[0], a[1], a[2], a[3] }, factor = { scale, scale, scale, scale };
+    shi_four sum;
+    memcpy(&sum, c, sizeof sum);
+    sum = factor * vector + sum;
+    memcpy(c, &sum, sizeof sum);
+}
+
+/* Nine floats in the fewest vectors that begin at multiples of their size: one that crosses a cache line reaches the load of the next
+ * sample late, and nine stores of single floats take longer than the arithmetic. */
+SHI_INLINE void shi_madd_nine(const float *a, float scale, float *c) {
+    switch ((uintptr_t)c & 12u) {
+    case 0:
+        shi_madd_four(a, scale, c);
+        shi_madd_four(a + 4, scale, c + 4);
+        sh_madd(SH_L0, a + 8, scale, c + 8);
+        break;
+    case 4:
+        sh_madd(SH_L0, a, scale, c);
+        shi_madd_two(a + 1, scale, c + 1);
+        shi_madd_four(a + 3, scale, c + 3);
+        shi_madd_two(a + 7, scale, c + 7);
+        break;
+    case 8:
+        shi_madd_two(a, scale, c);
+        shi_madd_four(a + 2, scale, c + 2);
+        shi_madd_two(a + 6, scale, c + 6);
+        sh_madd(SH_L0, a + 8, scale, c + 8);
+        break;
+    default:
+        sh_madd(SH_L0, a, scale, c);
+        shi_madd_four(a + 1, scale, c + 1);
+        shi_madd_four(a + 5, scale, c + 5);
+        break;
     }
+}
 #endif
+
+/* Made for sums of many samples into one set, which wait for its stores. */
+SHI_INLINE void sh_add_sample(int order, const float dir[3], float value, float *c) {
     float basis[SH_COUNT(SH_L2)] = { 0 };
     sh_basis(order, dir, basis);
-    sh_madd(order, basis, value, c);
+#if SHI_HAS_FOUR
+    if (order == SH_L1)
+        shi_madd_four(basis, value, c);
+    else if (order >= SH_L2)
+        shi_madd_nine(basis, value, c);
+    else
+#endif
+        sh_madd(order, basis, value, c);
 }
 
 SHI_INLINE float shi_dot3(const float a[3], const float b[3]) {
@@ -3237,7 +3282,7 @@ SHI_INLINE shi_v shi_polynomial(int order, const shi_v *p, shi_v x, shi_v y, shi
 }
 
 /* sums += factor * values, twice: two share the load of a factor. */
-SHI_INLINE void shi_madd_two(shi_v factor, shi_v a, shi_v b, shi_v *sum_a, shi_v *sum_b) {
+SHI_INLINE void shi_madd_both(shi_v factor, shi_v a, shi_v b, shi_v *sum_a, shi_v *sum_b) {
     factor = shi_keep(factor);
     *sum_a = shi_madd(factor, a, *sum_a);
     *sum_b = shi_madd(factor, b, *sum_b);
@@ -3249,13 +3294,13 @@ SHI_INLINE void shi_polynomial_two(int order, const shi_v *p, const shi_v *a, co
     if (order >= SH_L1) {
         shi_v px_a = p[SHI_X], px_b = p[SHI_X], py_a = p[SHI_Y], py_b = p[SHI_Y];
         if (order >= SH_L2) {
-            shi_madd_two(p[SHI_XZ], a[2], b[2], &px_a, &px_b);
-            shi_madd_two(p[SHI_YZ], a[2], b[2], &py_a, &py_b);
-            shi_madd_two(p[SHI_XY], a[1], b[1], &px_a, &px_b);
-            shi_madd_two(p[SHI_YY], a[1], b[1], &py_a, &py_b);
-            shi_madd_two(p[SHI_XX], a[0], b[0], &px_a, &px_b);
+            shi_madd_both(p[SHI_XZ], a[2], b[2], &px_a, &px_b);
+            shi_madd_both(p[SHI_YZ], a[2], b[2], &py_a, &py_b);
+            shi_madd_both(p[SHI_XY], a[1], b[1], &px_a, &px_b);
+            shi_madd_both(p[SHI_YY], a[1], b[1], &py_a, &py_b);
+            shi_madd_both(p[SHI_XX], a[0], b[0], &px_a, &px_b);
         }
-        shi_madd_two(p[SHI_Z], a[2], b[2], &c, &d);
+        shi_madd_both(p[SHI_Z], a[2], b[2], &c, &d);
         c = shi_madd(px_a, a[0], shi_madd(py_a, a[1], c));
         d = shi_madd(px_b, b[0], shi_madd(py_b, b[1], d));
     }
@@ -4240,12 +4285,12 @@ SHI_INLINE void shi_fold_block(int order, const unsigned char *const here[2], co
             a.sum = shi_add(a.sum, even_a);
             b.sum = shi_add(b.sum, even_b);
             if (order >= SH_L1) {
-                shi_madd_two(table[0], odd_a, odd_b, &a.cos1, &b.cos1);
-                shi_madd_two(table[1], odd_a, odd_b, &a.sin1, &b.sin1);
+                shi_madd_both(table[0], odd_a, odd_b, &a.cos1, &b.cos1);
+                shi_madd_both(table[1], odd_a, odd_b, &a.sin1, &b.sin1);
             }
             if (order >= SH_L2) {
-                shi_madd_two(table[2], even_a, even_b, &a.cos2, &b.cos2);
-                shi_madd_two(table[3], even_a, even_b, &a.sin2, &b.sin2);
+                shi_madd_both(table[2], even_a, even_b, &a.cos2, &b.cos2);
+                shi_madd_both(table[3], even_a, even_b, &a.sin2, &b.sin2);
             }
             shi_next_ask(next);
         }
@@ -4729,14 +4774,14 @@ SHI_INLINE void shi_plane_block(int order, const unsigned char *row_a, const uns
         for (size_t i = (size_t)phase; i < vectors; i += (size_t)phases) {
             const shi_v *f = factors->table[i];
             const shi_v texels_a = shi_load(row_a + i * sizeof(shi_v)), texels_b = shi_load(row_b + i * sizeof(shi_v));
-            shi_madd_two(f[SHI_W], texels_a, texels_b, &a[SHI_W], &b[SHI_W]);
+            shi_madd_both(f[SHI_W], texels_a, texels_b, &a[SHI_W], &b[SHI_W]);
             if (order >= SH_L1) {
-                shi_madd_two(f[SHI_WR], texels_a, texels_b, &a[SHI_WR], &b[SHI_WR]);
-                shi_madd_two(f[SHI_WRU], texels_a, texels_b, &a[SHI_WRU], &b[SHI_WRU]);
+                shi_madd_both(f[SHI_WR], texels_a, texels_b, &a[SHI_WR], &b[SHI_WR]);
+                shi_madd_both(f[SHI_WRU], texels_a, texels_b, &a[SHI_WRU], &b[SHI_WRU]);
             }
             if (order >= SH_L2) {
-                shi_madd_two(f[SHI_WRR], texels_a, texels_b, &a[SHI_WRR], &b[SHI_WRR]);
-                shi_madd_two(f[SHI_WRRU], texels_a, texels_b, &a[SHI_WRRU], &b[SHI_WRRU]);
+                shi_madd_both(f[SHI_WRR], texels_a, texels_b, &a[SHI_WRR], &b[SHI_WRR]);
+                shi_madd_both(f[SHI_WRRU], texels_a, texels_b, &a[SHI_WRRU], &b[SHI_WRRU]);
             }
         }
         for (int i = 0; i < SHI_SUMS; i++) {
@@ -4851,12 +4896,12 @@ SHI_INLINE void shi_cube_block(int order, int q_flips, const unsigned char *cons
             const shi_v difference_even = shi_add(difference_a, difference_b), difference_odd = shi_sub(difference_a, difference_b);
             one = shi_madd(f[SHI_W], sum_even, one);
             if (order >= SH_L1) {
-                shi_madd_two(f[SHI_WR], difference_even, sum_odd, &v, &c);
+                shi_madd_both(f[SHI_WR], difference_even, sum_odd, &v, &c);
                 q = shi_madd(f[SHI_WRU], q_flips ? sum_odd : sum_even, q);
             }
             if (order >= SH_L2) {
-                shi_madd_two(f[SHI_WRR], sum_even, difference_odd, &cc, &cv);
-                shi_madd_two(f[SHI_WRRU], q_flips ? sum_even : sum_odd, q_flips ? difference_odd : difference_even, &cq, &qv);
+                shi_madd_both(f[SHI_WRR], sum_even, difference_odd, &cc, &cv);
+                shi_madd_both(f[SHI_WRRU], q_flips ? sum_even : sum_odd, q_flips ? difference_odd : difference_even, &cq, &qv);
             }
             shi_next_ask(next);
         }

@@ -151,6 +151,25 @@ static void arithmetic(void) {
     }
 }
 
+/* Wherever the set begins, sh_add_sample gives the same bits, and touches nothing else. */
+static void alignments(void) {
+    for (int order = SH_L0; order <= SH_L2; order++)
+        for (int at = 1; at <= 8; at++) {
+            float memory[20], before[20], c[9], dir[3];
+            const size_t size = (size_t)SH_COUNT(order) * sizeof(float);
+            test_section("a sample of order %d, %d floats into an array", order, at);
+            test_fill(memory, 20, -1.0, 1.0);
+            test_direction(dir);
+            memcpy(before, memory, sizeof memory);
+            memcpy(c, memory + at, sizeof c);
+            sh_add_sample(order, dir, 0.7f, c);
+            sh_add_sample(order, dir, 0.7f, memory + at);
+            SAME_BITS(memory + at, c, size);
+            memcpy(before + at, c, size);
+            SAME_BITS(memory, before, sizeof memory);
+        }
+}
+
 static void in_place(void) {
     float a[9], b[9], out[9];
     test_section("outputs may be inputs");
@@ -198,6 +217,7 @@ static void run_tests(void) {
     dot_of_units();
     dot();
     arithmetic();
+    alignments();
     in_place();
     truncation();
 }
