@@ -5271,14 +5271,12 @@ SHI_INLINE void shi_prepare_model(int order, int family, const float *c, sh_clos
 /* Where a batch's models come from: prepared by the caller; or coefficients, prepared once where there are few channels, else as
  * each block needs them. */
 typedef struct shi_source {
-    int channels;
     const float *c;
     const sh_closure *prepared;
     sh_closure kept[SH_MAX_CHANNELS];
 } shi_source;
 
 SHI_INLINE void shi_source_init(int order, int family, int channels, const float *c, const sh_closure *prepared, shi_source *s) {
-    s->channels = channels;
     s->c = c;
     s->prepared = prepared;
     if (!prepared && channels <= SH_MAX_CHANNELS) {

