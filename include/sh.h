@@ -95,11 +95,12 @@ typedef float shi_four __attribute__((vector_size(16)));
 #define SHI_HAS_FOUR 0
 #endif
 
-/* Before a loop over the coefficients of a set: GCC leaves it rolled at -O2. */
+/* Before a loop to be unrolled n times: GCC leaves it rolled at -O2. */
 #if defined(__GNUC__) && !defined(__clang__) && !defined(__CUDACC__)
-#define SHI_UNROLL _Pragma("GCC unroll 9")
+#define SHI_PRAGMA(text) _Pragma(#text)
+#define SHI_UNROLL(n) SHI_PRAGMA(GCC unroll n)
 #else
-#define SHI_UNROLL
+#define SHI_UNROLL(n)
 #endif
 
 /* ---- Types and constants ------------------------------------------------------------------------------------------------------ */
@@ -645,19 +646,19 @@ SHI_INLINE void sh_basis(int order, const float dir[3], float *basis) {
 }
 
 SHI_INLINE void sh_scale(int order, const float *c, float scale, float *out) {
-    SHI_UNROLL
+    SHI_UNROLL(9)
     for (int i = 0; i < SH_COUNT(order); i++)
         out[i] = scale * c[i];
 }
 
 SHI_INLINE void sh_madd(int order, const float *a, float scale, float *c) {
-    SHI_UNROLL
+    SHI_UNROLL(9)
     for (int i = 0; i < SH_COUNT(order); i++)
         c[i] += scale * a[i];
 }
 
 SHI_INLINE void sh_lerp(int order, const float *a, const float *b, float t, float *out) {
-    SHI_UNROLL
+    SHI_UNROLL(9)
     for (int i = 0; i < SH_COUNT(order); i++)
         out[i] = (1.0f - t) * a[i] + t * b[i];
 }
@@ -2519,7 +2520,7 @@ SHI_INLINE shi_ratio shi_ratio_code(int i, int bits) {
 SHI_INLINE void shi_decode_ratios(int order, const uint16_t *code, int bits, float r0, float *out) {
     const double unit = r0 > 0.0f ? (double)r0 : 0.0;
     out[SH_R0] = r0;
-    SHI_UNROLL
+    SHI_UNROLL(9)
     for (int i = SH_X; i < SH_COUNT(order); i++) {
         const shi_ratio ratio = shi_ratio_code(i, bits);
         out[i] = (float)(unit * (((double)code[i - 1] - ratio.zero) * ratio.step));
@@ -2528,7 +2529,7 @@ SHI_INLINE void shi_decode_ratios(int order, const uint16_t *code, int bits, flo
 
 SHI_INLINE void shi_encode_ratios(int order, const float *c, int bits, double shrink, uint16_t *code) {
     const double inverse = c[SH_R0] > 0.0f ? shrink / (double)c[SH_R0] : 0.0;
-    SHI_UNROLL
+    SHI_UNROLL(9)
     for (int i = SH_X; i < SH_COUNT(order); i++) {
         const shi_ratio ratio = shi_ratio_code(i, bits);
         const double t = inverse * (double)c[i], low = t > ratio.least ? t : ratio.least;
@@ -3319,6 +3320,7 @@ SHI_INLINE void shi_evaluate(int order, const float *polynomial, const float *x,
                              size_t count, const float *next_in, const float *next_out) {
     shi_v p[SH_COUNT(SH_L2)];
     shi_splat_all(order, polynomial, p);
+    SHI_UNROLL(2)
     for (size_t i = 0; i < count; i += SHI_LANES) {
         shi_store(out + i, shi_polynomial(order, p, shi_load(x + i), shi_load(y + i), shi_load(z + i)));
         if (next_out) {
@@ -3480,7 +3482,7 @@ SHI_INLINE void shi_evaluate_aos_pass(int order, const shi_v *p, const unsigned 
     shi_v a[4], b[4], v[3][2];
     shi_load4(in, in_stride, a);
     shi_load4(in + SHI_LANES * in_stride, in_stride, b);
-    SHI_UNROLL
+    SHI_UNROLL(9)
     for (int k = 0; k < 3; k++)
         shi_polynomial_two(order, p + k * SH_COUNT(order), a, b, v[k]);
     shi_store3(out, out_stride, v[0][0], v[1][0], v[2][0]);
@@ -3936,7 +3938,7 @@ SHI_INLINE void shi_add_zonal(int order, int channels, const float zonal[3], con
         shi_add_zonal_scalar(order, channels, zonal, dir, value, c);
         return;
     }
-    SHI_UNROLL
+    SHI_UNROLL(9)
     for (int k = 0; k < channels; k++)
         shi_add_scaled(value[k], zonal[0], c + k * SH_COUNT(SH_L2));
     for (int first = 0; first < SHI_ROTATED; first += SHI_LANES) {
@@ -3944,7 +3946,7 @@ SHI_INLINE void shi_add_zonal(int order, int channels, const float zonal[3], con
         const shi_v factor = shi_madd(shi_load8(is_first + first), k1, shi_mul(shi_load8(is_second + first), k2));
         const shi_v lobe = shi_mul(factor, shi_basis_vector(dir, first));
         float *at = c + SH_X + first;
-        SHI_UNROLL
+        SHI_UNROLL(9)
         for (int k = 0; k < channels; k++, at += SH_COUNT(SH_L2))
             shi_store8(at, shi_add(shi_load8(at), shi_mul(shi_splat(value[k]), lobe)));
     }
@@ -4079,7 +4081,7 @@ SHI_INLINE void shi_decode_f16(const unsigned char *in, int count, float *out) {
 
 /* A word of three mantissas of `bits` bits each, lowest first, and an exponent whose scale is given. */
 SHI_INLINE void shi_unpack_rgb(shi_i word, int bits, shi_v scale, float *out) {
-    SHI_UNROLL
+    SHI_UNROLL(9)
     for (int k = 0; k < 3; k++)
         shi_store(out + k * SHI_BLOCK, shi_mul(shi_to_float(shi_iand(shi_shr(word, k * bits), (1 << bits) - 1)), scale));
 }
