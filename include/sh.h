@@ -2183,10 +2183,11 @@ SHI_FUNCTION int shi_rim_points(const double center[3], const double axis[3], do
 }
 
 /* Around the rim p of a disk: f = integral of u x du, R2 from (u x du) u', and the solid angle from axis.(u x du) / (1 + axis.u), whose
- * denominator is at least 1 as the axis points away from the receiver. */
+ * denominator is at least 1 as the axis points away from the receiver. No part of the rim is seen under more than half a turn, however
+ * near it is. */
 SHI_FUNCTION void shi_disk_integral(const double center[3], const double axis[3], double radius, double integral[9]) {
     const int points = shi_rim_points(center, axis, radius);
-    const double step = 2.0 * SHI_PI / points, cos_step = cos(step), sin_step = sin(step);
+    const double step = 2.0 * SHI_PI / points, cos_step = cos(step), sin_step = sin(step), least = radius * step / SHI_PI;
     double u[3], v[3], cosine = 1.0, sine = 0.0;
     shi_complete_frame(axis, u, v);
     memset(integral, 0, 9 * sizeof *integral);
@@ -2197,7 +2198,7 @@ SHI_FUNCTION void shi_disk_integral(const double center[3], const double axis[3]
             slope[k] = radius * step * (cosine * v[k] - sine * u[k]);
         }
         shi_cross(p, slope, f);
-        const double square = shi_dot3d(p, p), inverse = square > 0.0 ? 1.0 / square : 0.0, length = sqrt(inverse);
+        const double inverse = 1.0 / fmax(shi_dot3d(p, p), least * least), length = sqrt(inverse);
         for (int k = 0; k < 3; k++) {
             f[k] *= inverse;
             g[k] = p[k] * length;

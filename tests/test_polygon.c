@@ -172,7 +172,7 @@ static void degenerate(void) {
 }
 
 static void disks(void) {
-    const float one = 1.0f;
+    const float one = 1.0f, up[3] = { 0, 0, 1 };
     for (int i = 0; i < 12; i++) {
         float center[3], normal[3], c[9] = { 0 };
         long double expected[9];
@@ -223,6 +223,17 @@ static void disks(void) {
         EQUAL(sh_add_polygon(SH_L2, 1, vertices, 512, &one, polygon), SH_OK);
         if (fabsf(center[2]) > 1e-3f)
             NEAR_ALL(c, polygon, 9, 3e-5);
+    }
+    /* On the rim, or nearer to it than the sum can see, it is still some light. */
+    for (int i = 0; i < 60; i++) {
+        const double distance = pow(10.0, -45.0 + 0.75 * i), radius = i % 2 ? 1.0 : 16777216.0;
+        const float center[3] = { (float)(i % 3 ? -radius : -radius - distance), 0.0f, i % 3 == 2 ? 0.0f : (float)distance };
+        float c[9] = { 0 };
+        test_section("disk of radius %g, %g from its rim", radius, distance);
+        sh_add_disk(SH_L2, 1, center, up, (float)radius, &one, c);
+        CHECK(c[0] >= -1e-6f && c[0] <= 0.51f);
+        for (int k = 1; k < 9; k++)
+            CHECK(fabsf(c[k]) <= 0.51f);
     }
     const float nowhere[3] = { 0, 0, 0 }, z[3] = { 0, 0, 1 }, hemisphere[9] = { 0.5f, 0, 0, 0.25f, 0, 0, 0, 0, 0 };
     float c[9] = { 0 };
