@@ -29,7 +29,8 @@ static inline int output_is_special(const char *path) {
 }
 
 static inline int output_errno(void) {
-    return errno ? errno : EIO;
+    const int error = errno;
+    return error ? error : EIO;
 }
 
 /* 0, or errno and nothing to close. */

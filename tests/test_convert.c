@@ -203,10 +203,11 @@ static void babylon(void) {
         NEAR(sh_irradiance(SH_L2, c, n), value, 6e-6);
         sh_from_babylon(p, back);
         NEAR_ALL(back, c, 9, 1e-6 * (double)c[0]);
+        const double rounding = 4e-7 * (double)c[0]; /* in place, -ffast-math may round differently */
         sh_to_babylon(c, c);
-        SAME_BITS(c, p, sizeof p);
+        NEAR_ALL(c, p, 9, rounding);
         sh_from_babylon(c, c);
-        SAME_BITS(c, back, sizeof back);
+        NEAR_ALL(c, back, 9, rounding);
     }
 }
 
